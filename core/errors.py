@@ -1,0 +1,44 @@
+"""Faults that a user can mend."""
+
+from pathlib import Path
+
+
+class MocapError(Exception):
+    """A fault in the input, shown verbatim to the user as one line.
+
+    The line names, as far as they apply, the file, camera and frame at fault, says what is wrong
+    and ends with what to do about it.
+
+    Args:
+        problem: what is wrong, without a final full stop.
+        remedy: what the user can do, without a final full stop.
+        file: the file or folder at fault.
+        camera: the camera's name.
+        frame: the frame number, as counted in the take.
+    """
+
+    def __init__(
+        self,
+        problem: str,
+        remedy: str | None = None,
+        *,
+        file: str | Path | None = None,
+        camera: str | None = None,
+        frame: int | None = None,
+    ):
+        self.problem = problem
+        self.remedy = remedy
+        self.file = None if file is None else Path(file)
+        self.camera = camera
+        self.frame = frame
+        super().__init__(self._line())
+
+    def _line(self) -> str:
+        place = [
+            str(self.file) if self.file is not None else "",
+            f"camera {self.camera}" if self.camera is not None else "",
+            f"frame {self.frame}" if self.frame is not None else "",
+        ]
+        prefix = ", ".join(part for part in place if part)
+        line = f"{prefix}: {self.problem}" if prefix else self.problem
+        return f"{line}; {self.remedy}" if self.remedy else line

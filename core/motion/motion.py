@@ -1,0 +1,91 @@
+"""The result of tracking: poses, points and scores of every frame, as stored in motion.npz."""
+
+from dataclasses import dataclass, fields
+from fractions import Fraction
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import MocapError
+
+VERSION = 1
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """A tracked take (SPEC §9, motion.npz).
+
+    Shapes: T frames, D DOFs, J joints, 14 points, V views.
+
+    Attributes:
+        fps: frames per second as (numerator, denominator).
+        frames: (T,) int frame numbers of the footage.
+        pose: (T, D) the poses to use.
+        pose_raw: (T, D) the poses as tracked, before any cleaning.
+        dof_names: D names.
+        joints: (T, J, 3) world metres.
+        joint_names: J names.
+        points: (T, 14, 3) world metres.
+        point_names: 14 names.
+        xor_px: (T, V) px that differ between observed and rendered silhouette.
+        iou: (T, V) intersection over union of the two; NaN where nothing was observed.
+        view_weights: (T, V) how far each view was trusted, 0 to 1.
+        limb_residual: (T, 5) mean contour distance in px of torso, left arm, right arm, left leg, right leg.
+        camera_names: V names.
+        confidence: (T, 14) probability that a point is off by less than 50 mm.
+        lost: (T,) bool, the pose is not to be trusted.
+        locked: (T,) bool, the pose was given by the user.
+    """
+
+    fps: tuple[int, int]
+    frames: np.ndarray
+    pose: np.ndarray
+    pose_raw: np.ndarray
+    dof_names: tuple[str, ...]
+    joints: np.ndarray
+    joint_names: tuple[str, ...]
+    points: np.ndarray
+    point_names: tuple[str, ...]
+    xor_px: np.ndarray
+    iou: np.ndarray
+    view_weights: np.ndarray
+    limb_residual: np.ndarray
+    camera_names: tuple[str, ...]
+    confidence: np.ndarray
+    lost: np.ndarray
+    locked: np.ndarray
+
+    @property
+    def rate(self) -> Fraction:
+        """Frames per second."""
+        return Fraction(*self.fps)
+
+
+def write_motion(path: Path, motion: Motion) -> None:
+    """Writes ``motion`` whole or not at all."""
+    values = {f.name: np.asarray(getattr(motion, f.name)) for f in fields(Motion)}
+    partial = path.with_name(path.name + ".partial")
+    with partial.open("wb") as stream:
+        np.savez_compressed(stream, version=VERSION, **values)
+    partial.replace(path)
+
+
+def read_motion(path: Path) -> Motion:
+    """The motion stored in ``path``.
+
+    Raises:
+        MocapError: no such file, not a motion file, or one of another version.
+    """
+    try:
+        with np.load(path, allow_pickle=False) as data:
+            stored = {name: data[name] for name in data.files}
+    except (OSError, ValueError) as error:
+        raise MocapError("cannot be read as motion.npz", "give the file that fit wrote", file=path) from error
+    missing = [f.name for f in fields(Motion) if f.name not in stored]
+    if missing or int(stored["version"]) != VERSION:
+        raise MocapError("is no motion file of this version", "run fit again", file=path)
+    values = {f.name: stored[f.name] for f in fields(Motion)}
+    for name in ("dof_names", "joint_names", "point_names", "camera_names"):
+        values[name] = tuple(str(text) for text in values[name])
+    values["fps"] = tuple(int(number) for number in values["fps"])
+    return Motion(**values)
