@@ -1,0 +1,109 @@
+"""The pictures of one camera, streamed in frame order.
+
+A footage holds one picture at a time, so that memory does not grow with the take. Frame numbers
+are those of the take: numbered files keep their numbers, videos and unnumbered folders count from
+0.
+"""
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Protocol
+
+import numpy as np
+
+from ..errors import MocapError
+from .patterns import for_camera, has_frame, natural_key, numbered_files
+from .pictures import PICTURE_SUFFIXES
+from .sequence import PictureSequence
+from .video import Video
+
+
+class Footage(Protocol):
+    """What every kind of footage offers.
+
+    Attributes:
+        camera: the camera's name.
+        size: (width, height) of every picture in px.
+        fps: frames per second, where the file says so.
+        lossy: whether grey values may be off by the compression.
+    """
+
+    camera: str
+    size: tuple[int, int]
+    fps: float | None
+    lossy: bool
+
+    @property
+    def frames(self) -> Sequence[int]:
+        """The frame numbers that exist, rising; a video is decoded once to count them."""
+        ...
+
+    def picture(self, frame: int) -> np.ndarray:
+        """The picture of one frame, as stored (see ``read_picture``).
+
+        Raises:
+            MocapError: the frame is missing, damaged or of another size.
+        """
+        ...
+
+    def pictures(self, first: int, last: int) -> Iterator[tuple[int, np.ndarray]]:
+        """Frame number and picture of the frames ``first`` to ``last``, inclusive, one by one."""
+        ...
+
+
+def open_footage(
+    pattern: str | Path, camera: str, frames: tuple[int, int] | None = None
+) -> Footage:
+    """The footage of one camera.
+
+    Args:
+        pattern: a path with ``{camera}`` and, for picture sequences, ``{frame}`` or
+            ``{frame:06d}``; without a frame, the path of a video or of a folder, whose pictures
+            are sorted naturally (2 before 10) and counted from 0.
+        camera: the camera's name.
+        frames: first and last frame that will be asked for, inclusive; of a picture sequence all of
+            them must exist. A video's end is only found by decoding it: see ``Footage.frames``.
+
+    Raises:
+        MocapError: nothing there, not readable, or a frame of a sequence is missing.
+    """
+    path = for_camera(pattern, camera)
+    if has_frame(path):
+        return PictureSequence(camera, _numbered(path, camera), frames, path)
+    place = Path(path)
+    if place.is_dir():
+        return PictureSequence(camera, _folder(place, camera), frames)
+    if not place.exists():
+        remedy = "check the path, and that files are named after the cameras"
+        if "{" in path:
+            remedy = "check the path; only {camera} and {frame} are put in"
+        raise MocapError("no such footage", remedy, file=place, camera=camera)
+    if place.suffix.lower() in PICTURE_SUFFIXES:
+        raise MocapError(
+            "is a single picture",
+            "write {frame:06d} where the file names count the frames",
+            file=place,
+            camera=camera,
+        )
+    return Video(camera, place)
+
+
+def _numbered(pattern: str, camera: str) -> dict[int, Path]:
+    files = numbered_files(pattern)
+    if not files:
+        raise MocapError(
+            "no picture of this name",
+            "check the folder, and how many digits the frame numbers have",
+            file=pattern,
+            camera=camera,
+        )
+    return files
+
+
+def _folder(folder: Path, camera: str) -> dict[int, Path]:
+    paths = (path for path in folder.iterdir() if path.suffix.lower() in PICTURE_SUFFIXES)
+    # hidden files: macOS leaves ._name.png beside every picture on foreign disks
+    files = sorted((path for path in paths if path.name[0] != "."), key=natural_key)
+    if not files:
+        raise MocapError("no pictures in this folder", "check the path", file=folder, camera=camera)
+    return dict(enumerate(files))

@@ -1,0 +1,98 @@
+"""Single pictures on disk, as OpenCV decodes them.
+
+Files are read and written through memory: ``cv2.imread`` and ``cv2.imwrite`` cannot open paths
+beyond the local code page on Windows.
+"""
+
+from pathlib import Path
+
+import cv2
+import numpy as np
+
+from ..errors import MocapError
+
+PICTURE_SUFFIXES = (
+    ".png",
+    ".tif",
+    ".tiff",
+    ".jpg",
+    ".jpeg",
+    ".bmp",
+    ".webp",
+    ".pgm",
+    ".ppm",
+    ".tga",
+)
+_JPEG_MAGIC = b"\xff\xd8"
+
+
+def read_picture(
+    path: Path, camera: str | None = None, frame: int | None = None, remedy: str | None = None
+) -> np.ndarray:
+    """The picture of ``path`` as stored: (H, W), (H, W, 3) BGR or (H, W, 4) BGRA.
+
+    Elements are uint8, uint16 or float. The orientation tag of JPEG files is obeyed, as players and OpenCV's videos do.
+
+    Args:
+        path: the file.
+        camera: whose picture it is, for the message.
+        frame: its frame number, for the message.
+        remedy: what to advise when the file is missing.
+
+    Raises:
+        MocapError: no such file, or not a whole picture.
+    """
+    place = {"file": path, "camera": camera, "frame": frame}
+    try:
+        data = np.fromfile(path, np.uint8)
+    except FileNotFoundError as error:
+        raise MocapError("no such picture", remedy or "check the path", **place) from error
+    except OSError as error:
+        raise MocapError(f"cannot be read ({error.strerror})", "check the file", **place) from error
+    # unchanged keeps alpha but ignores the orientation tag, which only JPEG files carry in practice
+    unchanged = data[:2].tobytes() != _JPEG_MAGIC
+    flags = cv2.IMREAD_UNCHANGED if unchanged else cv2.IMREAD_ANYCOLOR | cv2.IMREAD_ANYDEPTH
+    picture = cv2.imdecode(data, flags) if data.size else None
+    if picture is None:
+        raise MocapError(
+            "is no picture that can be decoded, or is cut short", "export it again", **place
+        )
+    return picture
+
+
+def write_picture(path: Path, picture: np.ndarray, flags: tuple[int, ...] = ()) -> None:
+    """Writes ``picture`` in the format of ``path``'s suffix; missing folders are made.
+
+    Args:
+        path: the file to write; an existing one is replaced.
+        picture: (H, W), (H, W, 3) BGR or (H, W, 4) BGRA, uint8 or uint16.
+        flags: OpenCV's ``IMWRITE_`` pairs.
+
+    Raises:
+        MocapError: an unknown suffix, or a place that cannot be written to.
+    """
+    try:
+        coded, data = cv2.imencode(path.suffix, picture, flags)
+    except cv2.error:
+        coded = False
+    if not coded:
+        raise MocapError("is no picture format that can be written", "use .png", file=path)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        data.tofile(path)
+    except OSError as error:
+        raise MocapError(f"cannot be written ({error.strerror})", file=path) from error
+
+
+def colour_picture(picture: np.ndarray) -> np.ndarray:
+    """(H, W, 3) uint8 BGR of a picture as ``read_picture`` gives it; transparency is dropped.
+
+    16-bit pictures are scaled by 1/257, floating-point ones are taken as 0 to 1.
+    """
+    if picture.dtype == np.uint16:
+        picture = np.round(picture / 257.0).astype(np.uint8)
+    elif picture.dtype != np.uint8:
+        picture = np.round(np.clip(picture, 0, 1) * 255.0).astype(np.uint8)
+    if picture.ndim == 2:
+        return cv2.cvtColor(picture, cv2.COLOR_GRAY2BGR)
+    return np.ascontiguousarray(picture[:, :, :3])

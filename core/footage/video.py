@@ -1,0 +1,96 @@
+"""Footage stored as a video file.
+
+Frames are counted by decoding from the start: containers' counts and seeking by index are wrong
+for damaged files, for variable frame rates and for many codecs.
+"""
+
+from collections.abc import Iterator, Sequence
+from functools import cached_property
+from pathlib import Path
+
+import cv2
+import numpy as np
+
+from ..errors import MocapError
+
+
+class Video:
+    """A video file, read forwards; going back starts again from its first frame.
+
+    Rotation that the file asks for is applied by the decoder.
+
+    Args:
+        camera: the camera's name.
+        path: the file.
+
+    Raises:
+        MocapError: not a video, or its first frame cannot be decoded.
+    """
+
+    lossy = True
+
+    def __init__(self, camera: str, path: Path):
+        self.camera = camera
+        self.path = path
+        self._capture = self._opened()
+        fps = self._capture.get(cv2.CAP_PROP_FPS)
+        self.fps = float(fps) if 0 < fps < 10_000 else None
+        self._next = 0
+        self._held: tuple[int, np.ndarray] | None = None
+        self.size = self.picture(0).shape[1::-1]
+
+    @cached_property
+    def frames(self) -> Sequence[int]:
+        """The frame numbers that exist; the whole file is decoded once to count them."""
+        capture, count = self._opened(), 0
+        while capture.grab():
+            count += 1
+        return range(count)
+
+    def picture(self, frame: int) -> np.ndarray:
+        """(H, W, 3) uint8 BGR picture of one frame.
+
+        Raises:
+            MocapError: the video ends before, or breaks off.
+        """
+        if self._held is not None and self._held[0] == frame:
+            return self._held[1]
+        if frame < self._next:
+            self._capture, self._next = self._opened(), 0
+        while self._next < frame:
+            if not self._capture.grab():
+                raise self._ended(frame)
+            self._next += 1
+        good, picture = self._capture.read()
+        if not good:
+            raise self._ended(frame)
+        self._next += 1
+        self._held = (frame, picture)
+        return picture
+
+    def pictures(self, first: int, last: int) -> Iterator[tuple[int, np.ndarray]]:
+        """Frame number and picture of the frames ``first`` to ``last``, inclusive, one by one."""
+        for frame in range(first, last + 1):
+            yield frame, self.picture(frame)
+
+    def _opened(self) -> cv2.VideoCapture:
+        # one decoder on every system, so that the same file gives the same pictures
+        capture = cv2.VideoCapture(str(self.path), cv2.CAP_FFMPEG)
+        if not capture.isOpened():
+            raise MocapError(
+                "is no video that can be decoded, or is cut short",
+                "export it again, for example as H.264 in .mp4",
+                file=self.path,
+                camera=self.camera,
+            )
+        return capture
+
+    def _ended(self, frame: int) -> MocapError:
+        promised = int(self._capture.get(cv2.CAP_PROP_FRAME_COUNT))
+        if promised > max(frame, self._next):
+            problem = f"breaks off after {self._next} of {promised} frames"
+            remedy = "export it again, or narrow the take's frames"
+        else:
+            problem = f"ends after {self._next} frames, counted from 0"
+            remedy = "give longer footage, or narrow the take's frames"
+        return MocapError(problem, remedy, file=self.path, camera=self.camera, frame=frame)
