@@ -80,7 +80,9 @@ def read_motion(path: Path) -> Motion:
         with np.load(path, allow_pickle=False) as data:
             stored = {name: data[name] for name in data.files}
     except (OSError, ValueError) as error:
-        raise MocapError("cannot be read as motion.npz", "give the file that fit wrote", file=path) from error
+        raise MocapError(
+            "cannot be read as motion.npz", "give the file that fit wrote", file=path
+        ) from error
     missing = [f.name for f in fields(Motion) if f.name not in stored]
     if missing or int(stored["version"]) != VERSION:
         raise MocapError("is no motion file of this version", "run fit again", file=path)

@@ -1,0 +1,58 @@
+# Every target sets up what it needs; a second run of a set-up is instant.
+# Python 3.11 goes into .venv (with Blender 4.5 as a module), Python 3.13 into .venv-3.13 (5.2).
+
+SHELL := /bin/bash
+.SHELLFLAGS := -eu -o pipefail -c
+.DEFAULT_GOAL := help
+MOCAP := .venv/bin/silhouette-mocap
+NATIVE := $(wildcard setup.py core/native/*.py core/native/*.c core/native/*.h)
+CORE_TESTS := tests/core tests/test_layers.py
+
+.PHONY: help env demo demo-real test lint test-core test-addon bench blender clean
+
+help: ## This list
+	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /make \1\t/' | expand -t 18
+
+env: .venv/.installed .venv-3.13/.installed ## Both Python environments, with Blender as a module
+
+.venv/.installed: pyproject.toml $(NATIVE)
+	@.ci/environment 3.11 .venv
+
+.venv-3.13/.installed: pyproject.toml $(NATIVE)
+	@.ci/environment 3.13 .venv-3.13
+
+demo: .venv/.installed ## Fit the sample walk, from masks and from silhouette videos, into out/
+	@$(MOCAP) fit sample_scenes/walk/take.toml --out out/walk
+	@$(MOCAP) fit sample_scenes/walk/take_videos.toml --out out/walk_videos
+	@.venv/bin/python sample_scenes/table.py out/walk out/walk_videos
+
+demo-real: .venv/.installed ## Fetch the real four-camera recording and fit it into out/balance
+	@.venv/bin/python sample_scenes/balance/fetch.py
+	@$(MOCAP) plate sample_scenes/balance/take.toml
+	@$(MOCAP) masks sample_scenes/balance/take.toml --out out/balance/masks
+	@$(MOCAP) fit sample_scenes/balance/take.toml --out out/balance
+	@.venv/bin/python sample_scenes/table.py out/balance
+
+test: env lint test-core test-addon ## Linters and all tests, on Python 3.11 and 3.13 and both Blenders
+
+lint: .venv/.installed
+	.venv/bin/ruff check .
+	.venv/bin/ruff format --check .
+	.venv/bin/pyright
+
+test-core: env
+	.venv/bin/python -m pytest -q -n 2 $(CORE_TESTS)
+	.venv-3.13/bin/python -m pytest -q -n 2 $(CORE_TESTS)
+
+test-addon: env
+	.venv/bin/python -m pytest -q -n 2 tests/addon
+	.venv-3.13/bin/python -m pytest -q -n 2 tests/addon
+
+bench: .venv/.installed ## Speed of the energy, beside frozen baselines where they are at hand
+	@.venv/bin/python tests/benchmarks/energy.py
+
+blender: ## A real Blender 5.2 in .blender (needs root and a Debian-like machine)
+	@.ci/blender .blender
+
+clean: ## Forget results and caches; the environments stay
+	rm -rf out build dist .pytest_cache .ruff_cache
