@@ -1,0 +1,232 @@
+"""take.toml -> Take.
+
+A file may extend another one; tables are merged key by key, the extending file wins, and every
+path counts from the file it is written in.
+"""
+
+import os
+import tomllib
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+from ..errors import MocapError
+from .paths import PATH_KEYS, inside
+from .table import Table
+from .take import (
+    EXPORTS,
+    EXTRACTIONS,
+    INITIAL_KINDS,
+    TRACKERS,
+    Adjustment,
+    Calibrated,
+    FootageFiles,
+    InitialPose,
+    Performer,
+    Take,
+)
+
+VERSION = 1
+_TOP = (
+    "version", "name", "fps", "frames", "initial_pose", "extends", "locks",
+    "cameras", "footage", "performer", "world", "fit", "export",
+)  # fmt: skip
+_LATER_EXTRACTIONS = ("horprasert", "chroma_key", "mog2", "knn")
+_LATER_TRACKERS = ("contour", "monte_carlo")
+_LATER_EXPORTS = ("c3d", "glb", "usd")
+
+
+def read_take(path: str | Path, root: str | Path | None = None) -> Take:
+    """The take described by the TOML file ``path``.
+
+    Args:
+        path: the file.
+        root: the folder that all paths of the take must lie in; by default the folder above the
+            file's own folder.
+
+    Raises:
+        MocapError: no such file, not TOML, an unknown or missing key, a wrong value, a path outside
+            ``root``, or something that is not supported yet.
+    """
+    path = Path(path).resolve()
+    top_folder = path.parent.parent if root is None else Path(root).resolve()
+    inside(path, top_folder, path, "the take itself")
+    return _take(Table(_merged(path, top_folder, ()), path))
+
+
+def _merged(path: Path, root: Path, above: tuple[Path, ...]) -> dict[str, Any]:
+    """The tables of ``path`` over those of the file it extends, paths absolute."""
+    if path in above:
+        raise MocapError("extends itself", 'remove one of the "extends" keys', file=path)
+    values = _read_toml(path)
+    table = Table(values, path)
+    table.allow(*_TOP)
+    for section, keys in PATH_KEYS.items():
+        part = table.table(section) if section else table
+        for key in keys:
+            text = part.text(key)
+            if text is not None:
+                part.values[key] = str(inside(text, root, path, part.key(key)))
+    _place_body(table.table("performer"), root)
+    base = table.text("extends")
+    if base is None:
+        return values
+    base_path = inside(base, root, path, "extends")
+    return _over(_merged(base_path, root, (*above, path)), values)
+
+
+def _read_toml(path: Path) -> dict[str, Any]:
+    try:
+        return tomllib.loads(path.read_text("utf-8"))
+    except FileNotFoundError as error:
+        raise MocapError("no such file", "check the path", file=path) from error
+    except OSError as error:
+        raise MocapError(
+            f"cannot be read ({error.strerror})", "check the file", file=path
+        ) from error
+    except UnicodeDecodeError as error:
+        raise MocapError("is not UTF-8 text", "save it as UTF-8", file=path) from error
+    except tomllib.TOMLDecodeError as error:
+        raise MocapError(f"is not valid TOML ({error})", "mend that line", file=path) from error
+
+
+def _over(base: dict[str, Any], values: dict[str, Any]) -> dict[str, Any]:
+    merged = dict(base)
+    for key, value in values.items():
+        below = merged.get(key)
+        if isinstance(below, dict) and isinstance(value, dict):
+            value = _over(below, value)
+        merged[key] = value
+    return merged
+
+
+def _place_body(performer: Table, root: Path) -> None:
+    body = performer.text("body")
+    if body is not None and body.endswith(".npz"):
+        performer.values["body"] = str(inside(body, root, performer.file, "performer.body"))
+
+
+def _take(table: Table) -> Take:
+    if table.values.get("version") != VERSION:
+        found = table.values.get("version", "none")
+        table.fault(f'expected "version" = {VERSION}, got {found}', f"write version = {VERSION}")
+    table.refuse("locks", "remove the key")
+    frames = table.frames("frames")
+    world, fit, export = (table.table(name) for name in ("world", "fit", "export"))
+    world.allow("floor")
+    fit.allow("tracker")
+    export.allow("formats")
+    _refuse_later(fit, "tracker", _LATER_TRACKERS, TRACKERS)
+    _refuse_later(export, "formats", _LATER_EXPORTS, EXPORTS)
+    floor = world.number("floor")
+    return Take(
+        path=table.file,
+        name=_name(table),
+        fps=_fps(table),
+        frames=frames,
+        initial_pose=_initial_pose(table.table("initial_pose"), frames),
+        cameras=_cameras(table.table("cameras")),
+        footage=_footage(table.table("footage")),
+        performer=_performer(table.table("performer")),
+        floor=0.0 if floor is None else floor,
+        tracker=fit.choice("tracker", TRACKERS, TRACKERS[0]),
+        exports=export.words("formats", EXPORTS),
+    )
+
+
+def _refuse_later(table: Table, key: str, later: tuple[str, ...], instead: tuple[str, ...]) -> None:
+    value = table.values.get(key)
+    for word in value if isinstance(value, list) else [value]:
+        if word in later:
+            choices = ", ".join(instead)
+            table.fault(f'"{word}" in "{table.key(key)}" is not supported yet', f"use {choices}")
+
+
+def _name(table: Table) -> str:
+    name = table.text("name")
+    if name is None:
+        return table.file.parent.name
+    if name in (".", "..") or any(c in name for c in '/\\:*?"<>|\0') or name != name.strip():
+        table.fault(f'"name" = {name!r} cannot name files', "use letters, digits, _ and -")
+    return name
+
+
+def _fps(table: Table) -> Fraction:
+    table.required("fps")
+    fps = table.number("fps", lowest=0.0)
+    assert fps is not None
+    return exact_fps(fps)
+
+
+def exact_fps(fps: float) -> Fraction:
+    """The frame rate that a decimal number stands for; 29.97 is 30000/1001 (NTSC)."""
+    ntsc = Fraction(round(fps) * 1000, 1001)
+    if fps != round(fps) and round(fps) % 6 == 0 and abs(float(ntsc) - fps) < 0.005:
+        return ntsc
+    return Fraction(str(fps))
+
+
+def _initial_pose(table: Table, frames: tuple[int, int] | None) -> InitialPose:
+    table.allow("frames", "kind")
+    pose = InitialPose(table.frames("frames"), table.choice("kind", INITIAL_KINDS, "A"))
+    if frames and pose.frames and not frames[0] <= pose.frames[0] <= pose.frames[1] <= frames[1]:
+        table.fault(
+            f'"initial_pose.frames" {list(pose.frames)} lies outside "frames" {list(frames)}',
+            "give frames of the take",
+        )
+    return pose
+
+
+def _cameras(table: Table) -> Calibrated:
+    table.allow("calibration", "format", "units", "up", "offsets", "adjust")
+    table.refuse("offsets", "cut the footage so that all cameras start together")
+    table.required("calibration")
+    adjust = table.table("adjust")
+    return Calibrated(
+        calibration=Path(table.text("calibration") or ""),
+        format=table.text("format"),
+        units=table.text("units"),
+        up=table.text("up"),
+        adjust={camera: _adjustment(adjust.table(camera)) for camera in adjust.values},
+    )
+
+
+def _adjustment(table: Table) -> Adjustment:
+    table.allow("scale", "shift")
+    scale, shift = table.number("scale", lowest=0.0), table.numbers("shift", 2)
+    return Adjustment(1.0 if scale is None else scale, (0.0, 0.0) if shift is None else shift)
+
+
+def _footage(table: Table) -> FootageFiles:
+    table.allow(
+        "silhouettes", "video", "plate", "extraction", "ignore", *EXTRACTIONS, *_LATER_EXTRACTIONS
+    )
+    _refuse_later(table, "extraction", _LATER_EXTRACTIONS, EXTRACTIONS)
+    files = {key: table.text(key) for key in PATH_KEYS["footage"]}
+    if (files["silhouettes"] is None) == (files["video"] is None):
+        table.fault(
+            'expected either "silhouettes" or "video" in [footage], got '
+            + ("none" if files["video"] is None else "both"),
+            "give ready masks, or footage with a plate",
+        )
+    method = table.choice("extraction", EXTRACTIONS, "statistics")
+    for other in (*EXTRACTIONS, *_LATER_EXTRACTIONS):
+        if other in table.values and (other != method or files["video"] is None):
+            table.fault(
+                f"[footage.{other}] is of no use here",
+                f"the silhouettes come from {method}"
+                if files["video"]
+                else "the silhouettes are ready",
+            )
+    return FootageFiles(**files, extraction=method, extraction_settings=table.table(method).values)
+
+
+def _performer(table: Table) -> Performer:
+    table.allow("body", "height_m")
+    body = table.text("body") or "performer"
+    if "#" in body:
+        table.fault(f'a rig as "performer.body" ({body}) is not supported yet', 'use "performer"')
+    return Performer(
+        body=Path(body) if body.endswith(".npz") and os.path.isabs(body) else body,
+        height_m=table.number("height_m", lowest=0.0),
+    )

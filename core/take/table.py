@@ -1,0 +1,131 @@
+"""Tables of a TOML file, read key by key so that every fault names its file, key and remedy."""
+
+import difflib
+import math
+from collections.abc import Collection
+from pathlib import Path
+from typing import Any, NoReturn
+
+from ..errors import MocapError
+
+_TYPES = {bool: "true or false", int: "a whole number", float: "a number", str: "a text"}
+
+
+class Table:
+    """One table of a TOML file.
+
+    Args:
+        values: the table as tomllib gives it.
+        file: the file it comes from, for messages.
+        path: where in the file it stands, such as ``footage``; empty at the top.
+    """
+
+    def __init__(self, values: dict[str, Any], file: Path, path: str = ""):
+        self.values = values
+        self.file = file
+        self.path = path
+
+    def key(self, name: str) -> str:
+        """The dotted name of a key of this table."""
+        return f"{self.path}.{name}" if self.path else name
+
+    def fault(self, problem: str, remedy: str | None = None) -> NoReturn:
+        """Raises MocapError about this file."""
+        raise MocapError(problem, remedy, file=self.file)
+
+    def allow(self, *known: str) -> None:
+        """Refuses keys other than ``known``, naming the nearest one."""
+        for name in self.values:
+            if name not in known:
+                near = difflib.get_close_matches(name.lower(), known, n=1, cutoff=0.0)[0]
+                place = f" in [{self.path}]" if self.path else ""
+                self.fault(f'unknown key "{name}"{place}', f'did you mean "{near}"?')
+
+    def refuse(self, name: str, instead: str) -> None:
+        """Refuses a documented key whose function is not there yet."""
+        if name in self.values:
+            self.fault(f'"{self.key(name)}" is not supported yet', instead)
+
+    def _wrong(self, name: str, expected: str) -> NoReturn:
+        self.fault(f'expected {expected} for "{self.key(name)}", got {_shown(self.values[name])}')
+
+    def required(self, name: str) -> None:
+        """Refuses the table where ``name`` is missing."""
+        if name not in self.values:
+            self.fault(f'"{self.key(name)}" is missing', "add it to the take")
+
+    def table(self, name: str) -> "Table":
+        """The sub-table, empty where there is none."""
+        value = self.values.get(name, {})
+        if not isinstance(value, dict):
+            self._wrong(name, "a table")
+        return Table(value, self.file, self.key(name))
+
+    def text(self, name: str) -> str | None:
+        """A text that is not empty, or None."""
+        value = self.values.get(name)
+        if value is None:
+            return None
+        if not isinstance(value, str) or not value.strip():
+            self._wrong(name, "a text")
+        return value
+
+    def choice(self, name: str, known: Collection[str], default: str) -> str:
+        """One of the ``known`` words."""
+        value = self.text(name)
+        if value is None:
+            return default
+        if value not in known:
+            self._wrong(name, "one of " + ", ".join(known))
+        return value
+
+    def number(self, name: str, lowest: float = -math.inf) -> float | None:
+        """A finite number above ``lowest``, or None."""
+        value = self.values.get(name)
+        if value is None:
+            return None
+        bound = "" if lowest == -math.inf else f" above {lowest:g}"
+        if not _is_number(value) or value <= lowest:
+            self._wrong(name, f"a number{bound}")
+        return float(value)
+
+    def numbers(self, name: str, count: int, kind: type = float) -> tuple | None:
+        """``count`` numbers of ``kind`` (int or float), or None."""
+        value = self.values.get(name)
+        if value is None:
+            return None
+        right = isinstance(value, list) and len(value) == count
+        if not right or not all(_is_number(v) and (kind is float or type(v) is int) for v in value):
+            self._wrong(name, f"a list of {count} {'whole ' if kind is int else ''}numbers")
+        return tuple(kind(v) for v in value)
+
+    def frames(self, name: str) -> tuple[int, int] | None:
+        """First and last frame, inclusive, or None."""
+        value = self.numbers(name, 2, int)
+        if value is not None and not 0 <= value[0] <= value[1]:
+            self._wrong(name, "[first, last] with 0 <= first <= last")
+        return value
+
+    def words(self, name: str, known: Collection[str]) -> tuple[str, ...]:
+        """A list of ``known`` words, each once, in the order given."""
+        value = self.values.get(name, [])
+        if not isinstance(value, list) or not all(isinstance(v, str) for v in value):
+            self._wrong(name, "a list of texts")
+        for word in value:
+            if word not in known:
+                self.fault(
+                    f'"{word}" in "{self.key(name)}" is not supported',
+                    "choose from " + ", ".join(known),
+                )
+        return tuple(dict.fromkeys(value))
+
+
+def _is_number(value: Any) -> bool:
+    return type(value) in (int, float) and math.isfinite(value)
+
+
+def _shown(value: object) -> str:
+    if isinstance(value, dict):
+        return "a table"
+    kind = _TYPES.get(type(value), "a list" if isinstance(value, list) else type(value).__name__)
+    return f"{kind} ({value!r})"
