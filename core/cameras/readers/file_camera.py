@@ -13,8 +13,7 @@ import cv2
 import numpy as np
 
 from ...errors import MocapError
-
-DISTORTION_COUNTS = (0, 2, 4, 5, 8, 12, 14)
+from ..camera import LENS_COEFFICIENTS
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,7 +142,9 @@ def distortion_coefficients(value, fisheye: bool, place: Place) -> np.ndarray:
     coefficients = numbers(value, place).ravel()
     if fisheye and coefficients.size > 4 and not np.any(coefficients[4:]):
         coefficients = coefficients[:4]
-    counts = (4,) if fisheye else DISTORTION_COUNTS
+    if coefficients.size == 2 and not fisheye:
+        coefficients = np.pad(coefficients, (0, 2))
+    counts = (4,) if fisheye else LENS_COEFFICIENTS
     if coefficients.size not in counts:
         wanted = " or ".join(str(n) for n in counts)
         model = "fisheye lens" if fisheye else "lens"
@@ -151,7 +152,7 @@ def distortion_coefficients(value, fisheye: bool, place: Place) -> np.ndarray:
             f"should hold {wanted} numbers for a {model}, got {coefficients.size}",
             "correct or re-export the file",
         )
-    return np.pad(coefficients, (0, 2)) if coefficients.size == 2 else coefficients
+    return coefficients
 
 
 def rotation_matrix(value, place: Place) -> np.ndarray:
