@@ -15,10 +15,14 @@ import numpy as np
 
 from ..errors import MocapError
 from .camera import Camera
-from .readers import anipose_toml
+from .readers import anipose_toml, opencv_yml, qualisys_qca
 from .readers.file_camera import FileCamera, FileContent, Reader
 
-READERS: tuple[Reader, ...] = (anipose_toml.READER,)
+READERS: tuple[Reader, ...] = (
+    anipose_toml.READER,
+    qualisys_qca.READER,
+    opencv_yml.READER,
+)
 METRES_PER_UNIT = {"m": 1.0, "cm": 0.01, "mm": 0.001}
 WIDEST_SPREAD_IN_METRES = 50.0
 WORLD_FROM_UP = {
@@ -79,7 +83,7 @@ def read_calibration(path: str | Path, settings: CalibrationSettings | None = No
         MocapError: no such file, an unknown format, or a camera that cannot be used; the line
             names file, camera, key and remedy.
     """
-    path, settings = Path(path), settings or CalibrationSettings()
+    path, settings = _file(Path(path)), settings or CalibrationSettings()
     reader = _reader(path, settings.format)
     content = _checked_content(path, reader)
     units, guessed = _units(reader, content.cameras, settings.units)
@@ -102,7 +106,7 @@ def read_camera_names(
     Raises:
         MocapError: as :func:`read_calibration`, save for a missing size.
     """
-    path, settings = Path(path), settings or CalibrationSettings()
+    path, settings = _file(Path(path)), settings or CalibrationSettings()
     content = _checked_content(path, _reader(path, settings.format))
     return tuple(camera.name for camera in content.cameras)
 
@@ -116,6 +120,18 @@ def natural_key(name: str) -> list[tuple[bool, int, str]]:
 def _expect_one_of(key: str, value: str | None, known) -> None:
     if value is not None and value not in known:
         raise MocapError(f"unknown {key} {value!r} of a calibration", f"use {', '.join(known)}")
+
+
+def _file(path: Path) -> Path:
+    """The file to read where ``path`` may be the folder of a pair intri.yml, extri.yml."""
+    if not path.is_dir():
+        return path
+    file = path / "intri.yml"
+    if not file.exists():
+        raise MocapError(
+            "this folder holds no intri.yml", "name the calibration file itself", file=path
+        )
+    return file
 
 
 def _reader(path: Path, key: str | None) -> Reader:
@@ -205,7 +221,7 @@ def _metric_camera(
     if size is None:
         raise MocapError(
             "the calibration does not tell the size of the pictures",
-            "give the footage, or sizes = { camera = [width, height] }",
+            "give it by camera in sizes, as the footage has it",
             file=path,
             camera=camera.name,
         )
