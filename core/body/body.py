@@ -44,7 +44,7 @@ class Dofs:
         kinds: (D,) int32, values of `DofKind`.
         axes: (D, 3) unit axes in the joint's space.
         limits: (D, 2) lowest and highest value, rad or m; infinite where free.
-        rest_spread: (D,) standard deviation about zero of the rest prior, rad or m; infinite for none.
+        rest_spread: (D,) spread about zero of the rest prior, rad or m; infinite for none.
         directions: D sentences, what the positive direction does ("bends the forearm up").
     """
 
@@ -82,7 +82,8 @@ class Surface:
     Attributes:
         vertices: (n, 3) float32 metres, in the space of the joint that carries the segment.
         triangles: (m, 3) int32 indices into ``vertices``, grouped by segment.
-        vertex_starts: (S + 1,) int32; segment s owns vertices [vertex_starts[s], vertex_starts[s + 1]).
+        vertex_starts: (S + 1,) int32; segment s owns vertices
+            vertex_starts[s] to vertex_starts[s + 1].
         triangle_starts: (S + 1,) int32, likewise.
     """
 
@@ -157,11 +158,10 @@ class Body:
         points = len(POINT_NAMES)
         set_ = object.__setattr__
         set_(self, "parents", frozen_array(self.parents, (joints,), "parents", np.int32))
-        set_(self, "offsets", frozen_array(self.offsets, (joints, 3), "offsets"))
-        set_(self, "tails", frozen_array(self.tails, (joints, 3), "tails"))
-        set_(self, "segment_joints", frozen_array(self.segment_joints, (segments,), "segment_joints", np.int32))
-        set_(self, "point_joints", frozen_array(self.point_joints, (points,), "point_joints", np.int32))
-        set_(self, "point_offsets", frozen_array(self.point_offsets, (points, 3), "point_offsets"))
+        for name, count in (("offsets", joints), ("tails", joints), ("point_offsets", points)):
+            set_(self, name, frozen_array(getattr(self, name), (count, 3), name))
+        for name, count in (("segment_joints", segments), ("point_joints", points)):
+            set_(self, name, frozen_array(getattr(self, name), (count,), name, np.int32))
         if (self.parents >= np.arange(joints)).any():
             raise ValueError("expected parents before their children")
         if any(len(surface.vertex_starts) != segments + 1 for surface in self.surfaces):

@@ -1,0 +1,131 @@
+"""Where joints and points are in a pose, and which poses the limits allow.
+
+The plain statement of the convention in `body.py`, made of SciPy rotations: slow and obvious, the
+oracle of the native transforms.
+"""
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from .body import Body, DofKind
+
+TOLERANCE = 1e-9
+"""Slack of the limits, rad or m: a value put on its limit stays within it."""
+
+
+def joint_transforms(body: Body, poses: np.ndarray) -> np.ndarray:
+    """(N, J, 3, 4) world_from_joint of poses (N, D), metres."""
+    poses = _checked(body, poses)
+    out = np.zeros((len(poses), len(body.joint_names), 3, 4))
+    for joint, parent in enumerate(body.parents):
+        rotation, shift = _joint_motion(body, joint, poses)
+        offset = body.offsets[joint] + shift
+        if parent < 0:
+            out[:, joint, :, :3], out[:, joint, :, 3] = rotation, offset
+            continue
+        world_from_parent = out[:, parent, :, :3]
+        out[:, joint, :, :3] = world_from_parent @ rotation
+        out[:, joint, :, 3] = (world_from_parent @ offset[..., None])[..., 0] + out[:, parent, :, 3]
+    return out
+
+
+def _joint_motion(body: Body, joint: int, poses: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Rotation (N, 3, 3) and shift (N, 3) of one joint: the product of its rows in order."""
+    rotation = np.broadcast_to(np.eye(3), (len(poses), 3, 3))
+    shift = np.zeros((len(poses), 3))
+    rows = iter(np.flatnonzero(body.dofs.joints == joint))
+    for row in rows:
+        vector = poses[:, row, None] * body.dofs.axes[row]
+        if body.dofs.kinds[row] == DofKind.TRANSLATION:
+            shift = shift + (rotation @ vector[..., None])[..., 0]
+            continue
+        if body.dofs.kinds[row] == DofKind.SWING:
+            second = next(rows)
+            vector = vector + poses[:, second, None] * body.dofs.axes[second]
+        rotation = rotation @ Rotation.from_rotvec(vector).as_matrix()
+    return rotation, shift
+
+
+def joint_positions(body: Body, poses: np.ndarray) -> np.ndarray:
+    """(N, J, 3) world metres of all joints in poses (N, D)."""
+    return joint_transforms(body, poses)[..., 3]
+
+
+def points(body: Body, poses: np.ndarray) -> np.ndarray:
+    """(N, 14, 3) world metres of `POINT_NAMES` in poses (N, D)."""
+    transforms = joint_transforms(body, poses)[:, body.point_joints]
+    return (transforms[..., :3] @ body.point_offsets[..., None])[..., 0] + transforms[..., 3]
+
+
+def world_vertices(body: Body, pose: np.ndarray, level: int = -1) -> np.ndarray:
+    """(n, 3) world metres of the vertices of one level of detail in a pose (D,)."""
+    surface = body.surfaces[level]
+    counts = np.diff(surface.vertex_starts)
+    joints = np.repeat(body.segment_joints, counts)
+    transforms = joint_transforms(body, np.asarray(pose)[None])[0, joints]
+    vertices = surface.vertices.astype(float)
+    return (transforms[..., :3] @ vertices[..., None])[..., 0] + transforms[..., 3]
+
+
+def rest_height(body: Body) -> float:
+    """Metres from the floor to the top of the head in the rest pose."""
+    return float(world_vertices(body, body.rest_pose)[:, 2].max())
+
+
+def swing_rows(body: Body, joint: int) -> tuple[int, int]:
+    """The two rows of the DOF table that make the joint's swing.
+
+    Raises:
+        ValueError: the joint has no swing.
+    """
+    dofs = body.dofs
+    rows = np.flatnonzero((dofs.joints == joint) & (dofs.kinds == DofKind.SWING))
+    if len(rows) != 2:
+        raise ValueError(f"expected a swing in joint {body.joint_names[joint]}")
+    return int(rows[0]), int(rows[1])
+
+
+def within_limits(body: Body, poses: np.ndarray) -> np.ndarray:
+    """(N,) bool, whether all values of poses (N, D) lie in their intervals and cones."""
+    poses = _checked(body, poses)
+    low, high = body.dofs.limits.T
+    inside = ((poses >= low - TOLERANCE) & (poses <= high + TOLERANCE)).all(axis=1)
+    for joint, cone in body.cones.items():
+        swings = poses[:, swing_rows(body, joint)]
+        inside &= (_edge_distances(cone, swings) >= -TOLERANCE).all(axis=1)
+    return inside
+
+
+def _edge_distances(cone: np.ndarray, swings: np.ndarray) -> np.ndarray:
+    """(N, K) signed distances of swings (N, 2) to the lines of a cone's edges, inside positive."""
+    edges = np.roll(cone, -1, axis=0) - cone
+    inward = np.stack([-edges[:, 1], edges[:, 0]], -1) / np.linalg.norm(edges, axis=1)[:, None]
+    return np.einsum("nkc,kc->nk", swings[:, None] - cone, inward)
+
+
+def clamped(body: Body, poses: np.ndarray) -> np.ndarray:
+    """Poses (N, D) brought within the limits: each value and each swing to the nearest allowed."""
+    poses = np.clip(_checked(body, poses), *body.dofs.limits.T)
+    for joint, cone in body.cones.items():
+        rows = swing_rows(body, joint)
+        swings = poses[:, rows]
+        outside = (_edge_distances(cone, swings) < 0).any(axis=1)
+        poses[np.ix_(outside, rows)] = _nearest_on_outline(cone, swings[outside])
+    return poses
+
+
+def _nearest_on_outline(cone: np.ndarray, swings: np.ndarray) -> np.ndarray:
+    """(N, 2) points of the polygon's outline nearest to swings (N, 2)."""
+    edges = np.roll(cone, -1, axis=0) - cone
+    offsets = swings[:, None] - cone
+    along = np.clip((offsets * edges).sum(-1) / (edges**2).sum(-1), 0, 1)
+    candidates = cone + along[..., None] * edges
+    nearest = np.linalg.norm(swings[:, None] - candidates, axis=-1).argmin(axis=1)
+    return candidates[np.arange(len(swings)), nearest]
+
+
+def _checked(body: Body, poses: np.ndarray) -> np.ndarray:
+    poses = np.array(poses, float)
+    if poses.ndim != 2 or poses.shape[1] != len(body.dofs):
+        raise ValueError(f"expected poses of shape any x {len(body.dofs)}, got {poses.shape}")
+    return poses

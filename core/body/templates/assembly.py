@@ -1,0 +1,138 @@
+"""From descriptions of joints, segments and parts to a `Body`."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..body import POINT_NAMES, Body, DofKind, Dofs, Part
+from .landmarks import landmarks
+from .proportions import Proportions
+from .skeleton import Joint, mirrored, on_the_right
+from .surfaces import MIRROR, Level, surface
+
+
+@dataclass(frozen=True)
+class Segment:
+    """A segment to be: its name, the joint that carries it, its surface pieces."""
+
+    name: str
+    joint: str
+    pieces: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Search:
+    """A part to be, by the joints whose DOFs it searches; ``grid`` is a subset of ``joints``."""
+
+    name: str
+    role: str
+    joints: tuple[str, ...]
+    grid: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """A template: centre and left; what is left is built on the right as well."""
+
+    name: str
+    joints: tuple[Joint, ...]
+    segments: tuple[Segment, ...]
+    searches: tuple[Search, ...]
+
+
+def assembled(plan: Plan, proportions: Proportions, levels: tuple[Level, ...]) -> Body:
+    """The body of a plan with given proportions and levels of detail, coarse first."""
+    joints = _both_sides(plan.joints, mirrored)
+    segments = _both_sides(plan.segments, _mirrored_segment)
+    searches = _in_turn(plan.searches)
+    names = tuple(joint.name for joint in joints)
+    places = _both_places(landmarks(proportions))
+    parents = [names.index(joint.parent) if joint.parent else -1 for joint in joints]
+    origins = np.array([places[name] for name in names])
+    offsets = origins - np.where(np.array(parents)[:, None] < 0, 0, origins[parents])
+    dofs = _dofs(joints)
+    carriers = np.array([names.index(segment.joint) for segment in segments])
+    point_joints = [_carrier(point, names) for point in POINT_NAMES]
+    point_places = np.array([places["skull" if p == "head" else p] for p in POINT_NAMES])
+    return Body(
+        name=plan.name,
+        joint_names=names,
+        parents=parents,
+        offsets=offsets,
+        tails=np.array([places[joint.tail] for joint in joints]) - origins,
+        dofs=dofs,
+        cones={i: joint.cone for i, joint in enumerate(joints) if joint.cone is not None},
+        segment_names=tuple(segment.name for segment in segments),
+        segment_joints=carriers,
+        surfaces=tuple(
+            surface(proportions, tuple((s.name, s.joint, s.pieces) for s in segments), level)
+            for level in levels
+        ),
+        point_joints=point_joints,
+        point_offsets=point_places - origins[point_joints],
+        parts=tuple(_part(search, names, parents, dofs, carriers) for search in searches),
+    )
+
+
+def _both_sides(items: tuple, mirror) -> tuple:
+    """Every item, and behind the left ones their mirror images as a second group."""
+    rights = [mirror(item) for item in items if item.name.startswith("left_")]
+    return (*items, *rights)
+
+
+def _mirrored_segment(segment: Segment) -> Segment:
+    return Segment(on_the_right(segment.name), on_the_right(segment.joint), segment.pieces)
+
+
+def _in_turn(searches: tuple[Search, ...]) -> list[Search]:
+    """Both sides of every search, the right one straight behind the left one."""
+    out = []
+    for search in searches:
+        out.append(search)
+        if search.name.startswith("left_"):
+            rights = (tuple(map(on_the_right, names)) for names in (search.joints, search.grid))
+            out.append(Search(on_the_right(search.name), search.role, *rights))
+    return out
+
+
+def _both_places(places: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    return places | {
+        on_the_right(n): p * MIRROR for n, p in places.items() if n.startswith("left_")
+    }
+
+
+def _carrier(point: str, names: tuple[str, ...]) -> int:
+    """The joint that carries a point; the head moves with the neck where it has no own joint."""
+    return names.index(point if point in names else "neck")
+
+
+def _dofs(joints: tuple[Joint, ...]) -> Dofs:
+    rows = [(index, row) for index, joint in enumerate(joints) for row in joint.rows]
+    units = [1.0 if row.kind == DofKind.TRANSLATION else np.pi / 180 for _, row in rows]
+    return Dofs(
+        names=tuple(row.name for _, row in rows),
+        joints=[index for index, _ in rows],
+        kinds=[row.kind for _, row in rows],
+        axes=[row.axis for _, row in rows],
+        limits=[np.multiply(row.limits, unit) for (_, row), unit in zip(rows, units, strict=True)],
+        rest_spread=[row.spread * unit for (_, row), unit in zip(rows, units, strict=True)],
+        directions=tuple(row.direction for _, row in rows),
+    )
+
+
+def _part(
+    search: Search, names: tuple[str, ...], parents: list[int], dofs: Dofs, carriers: np.ndarray
+) -> Part:
+    searched = [names.index(name) for name in search.joints]
+    gridded = [names.index(name) for name in search.grid]
+    moving = set(searched)
+    for joint, parent in enumerate(parents):
+        if parent in moving:
+            moving.add(joint)
+    return Part(
+        search.name,
+        search.role,
+        dofs=tuple(int(row) for row in np.flatnonzero(np.isin(dofs.joints, searched))),
+        grid=tuple(int(row) for row in np.flatnonzero(np.isin(dofs.joints, gridded))),
+        segments=tuple(int(s) for s in np.flatnonzero(np.isin(carriers, list(moving)))),
+    )

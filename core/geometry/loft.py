@@ -1,0 +1,152 @@
+"""Closed meshes drawn through cross-sections along a straight axis.
+
+A cross-section is made of four quarters of superellipses, |x / a|^n + |y / b|^n = 1, one radius
+for each of the four directions outer, inner, front and back. Between the given sections the radii follow
+a monotone cubic (no overshoot: a thigh never grows thicker than its sections say); beyond the first
+and last section the surface closes as half an ellipsoid.
+"""
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from scipy.interpolate import PchipInterpolator
+
+from .arrays import frozen_array
+
+BODY_SAMPLES = 49
+CAP_SAMPLES = 10
+
+
+@dataclass(frozen=True, eq=False)
+class Profile:
+    """Cross-sections along an axis from a start (station 0) to an end (station 1).
+
+    Attributes:
+        ends: the stations where the surface closes; outside the range of ``stations``.
+        stations: (K,) rising positions of the cross-sections, in lengths of the axis.
+        radii: (K, 4) metres from the axis towards outer, inner, front, back.
+        exponent: of the superellipse; 2 is an ellipse, more is boxier.
+
+    Raises:
+        ValueError: a wrong shape, falling stations, ends between the stations, a negative radius.
+    """
+
+    ends: tuple[float, float]
+    stations: np.ndarray
+    radii: np.ndarray
+    exponent: float = 2.0
+
+    def __post_init__(self):
+        set_ = object.__setattr__
+        set_(self, "stations", frozen_array(self.stations, (None,), "stations"))
+        set_(self, "radii", frozen_array(self.radii, (len(self.stations), 4), "radii"))
+        path = [self.ends[0], *self.stations, self.ends[1]]
+        if (np.diff(path) <= 0).any():
+            raise ValueError(f"expected rising stations between the ends, got {path}")
+        if (self.radii < 0).any():
+            raise ValueError("expected radii of at least 0 m")
+
+    def scaled(self, width: float, depth: float) -> "Profile":
+        """Outer and inner radii times ``width``, front and back times ``depth``."""
+        factors = np.array([width, width, depth, depth])
+        return Profile(self.ends, self.stations, self.radii * factors, self.exponent)
+
+    def sampled(self) -> tuple[np.ndarray, np.ndarray]:
+        """Dense stations (M,) and radii (M, 4) from pole to pole; the poles have no radius."""
+        first, last = self.stations[0], self.stations[-1]
+        angles = np.linspace(0, np.pi / 2, CAP_SAMPLES + 1)[1:]
+        shrink = np.cos(angles)[:, None]
+        shrink[-1] = 0
+        body = np.linspace(first, last, BODY_SAMPLES)
+        start = first + (self.ends[0] - first) * np.sin(angles)
+        end = last + (self.ends[1] - last) * np.sin(angles)
+        radii = PchipInterpolator(self.stations, self.radii)(body)
+        caps = self.radii[0] * shrink, self.radii[-1] * shrink
+        return np.r_[start[::-1], body, end], np.concatenate([caps[0][::-1], radii, caps[1]])
+
+
+def chosen_samples(curve: np.ndarray, count: int) -> np.ndarray:
+    """(count,) rising indices of the samples (M, K) whose polyline stays nearest to the curve.
+
+    The two ends are always taken; then, one by one, the sample farthest from the polyline so far
+    (Douglas and Peucker 1973).
+    """
+    chosen = [0, len(curve) - 1]
+    while len(chosen) < min(count, len(curve)):
+        gaps = np.zeros(len(curve))
+        for i, j in pairwise(chosen):
+            gaps[i : j + 1] = _distances_to_chord(curve[i : j + 1])
+        chosen = sorted([*chosen, int(np.argmax(gaps))])
+    return np.array(chosen)
+
+
+def _distances_to_chord(curve: np.ndarray) -> np.ndarray:
+    chord = curve[-1] - curve[0]
+    offsets = curve - curve[0]
+    along = np.clip(offsets @ chord / max(chord @ chord, 1e-30), 0, 1)
+    return np.linalg.norm(offsets - along[:, None] * chord, axis=1)
+
+
+def rings(radii: np.ndarray, exponent: float, sides: int) -> np.ndarray:
+    """(K, sides, 2) points outwards and frontwards of sections with ``radii`` (K, 4).
+
+    They are widened by 1 / sqrt(cos(pi / sides)), midway between the polygon inside the section
+    and the one around it, so that the area seen from the side is kept.
+    """
+    angles = 2 * np.pi * np.arange(sides) / sides
+    unit = np.stack([np.cos(angles), np.sin(angles)], -1)
+    unit[np.abs(unit) < 1e-12] = 0
+    unit = np.sign(unit) * np.abs(unit) ** (2 / exponent)
+    positive = unit > 0
+    widths = np.where(positive[:, 0], radii[:, :1], radii[:, 1:2])
+    depths = np.where(positive[:, 1], radii[:, 2:3], radii[:, 3:])
+    return unit * np.stack([widths, depths], -1) / np.sqrt(np.cos(np.pi / sides))
+
+
+def lofted(
+    profile: Profile, start: np.ndarray, end: np.ndarray, front: np.ndarray, detail: tuple[int, int]
+) -> tuple[np.ndarray, np.ndarray]:
+    """The closed mesh of ``profile`` along the axis from ``start`` to ``end``.
+
+    Args:
+        profile: the cross-sections.
+        start: (3,) station 0.
+        end: (3,) station 1.
+        front: (3,) any vector with the front's direction; made perpendicular to the axis. Outer is
+            front x axis: for a bone that hangs down and a front at -Y it is +X, the left.
+        detail: (sides, rings) of the mesh, without the two poles.
+
+    Returns:
+        vertices (2 + sides * rings, 3) and triangles (2 * sides * rings, 3), oriented outwards.
+    """
+    sides, count = detail
+    stations, radii = profile.sampled()
+    axis = end - start
+    along = axis / np.linalg.norm(axis)
+    front = front - (front @ along) * along
+    front = front / np.linalg.norm(front)
+    outer = np.cross(front, along)
+    picked = chosen_samples(np.c_[stations * np.linalg.norm(axis), radii], count + 2)
+    centres = start + stations[picked, None] * axis
+    sections = rings(radii[picked[1:-1]], profile.exponent, sides)
+    points = centres[1:-1, None] + sections[..., :1] * outer + sections[..., 1:] * front
+    vertices = np.concatenate([centres[:1], points.reshape(-1, 3), centres[-1:]])
+    return vertices, tube_triangles(sides, count)
+
+
+def tube_triangles(sides: int, count: int) -> np.ndarray:
+    """(2 * sides * count, 3) triangles of a pole, ``count`` rings of ``sides`` points and a pole.
+
+    The rings turn about the direction from the first pole to the last by the right-hand rule.
+    """
+    near = np.arange(sides)
+    far = np.roll(near, -1)
+    band = np.concatenate(
+        [np.stack([near, far, near + sides], 1), np.stack([far, far + sides, near + sides], 1)]
+    )
+    bands = (1 + band + sides * np.arange(count - 1)[:, None, None]).reshape(-1, 3)
+    last = 1 + sides * (count - 1)
+    start = np.stack([np.zeros_like(near), 1 + far, 1 + near], 1)
+    end = np.stack([np.full_like(near, last + sides), last + near, last + far], 1)
+    return np.concatenate([start, bands, end])
