@@ -221,7 +221,7 @@ def _metric_camera(
     if size is None:
         raise MocapError(
             "the calibration does not tell the size of the pictures",
-            "give it by camera in sizes, as the footage has it",
+            "add it to the file, or give the footage's size",
             file=path,
             camera=camera.name,
         )

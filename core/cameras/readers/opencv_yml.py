@@ -111,10 +111,12 @@ def _nodes(path: Path) -> dict[str, np.ndarray | list[str] | float]:
     """Matrices, lists of strings and numbers of a file by key."""
     try:
         flags = cv2.FileStorage_READ | cv2.FileStorage_MEMORY
-        root = cv2.FileStorage(path.read_text(encoding="utf-8-sig"), flags).root()
+        storage = cv2.FileStorage(path.read_text(encoding="utf-8-sig"), flags)
+        root = storage.root()
         return {key: _value(root.getNode(key)) for key in root.keys()}  # noqa: SIM118
     except (cv2.error, SystemError, UnicodeDecodeError, OSError) as error:
-        reason = str(getattr(error, "err", error)).strip()
+        cause = error.__cause__ or error  # cv2 wraps its own error where a binding fails late
+        reason = str(getattr(cause, "err", cause)).strip()
         raise MocapError(
             f"OpenCV cannot read it ({reason})", "complete the file or write it again", file=path
         ) from None
@@ -122,7 +124,8 @@ def _nodes(path: Path) -> dict[str, np.ndarray | list[str] | float]:
 
 def _value(node: cv2.FileNode):
     if node.isSeq():
-        return [node.at(i).string() for i in range(node.size())]
+        items = [node.at(i) for i in range(node.size())]
+        return [item.string() for item in items if item.isString()]
     return node.mat() if node.isMap() else node.real()
 
 
