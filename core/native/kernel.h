@@ -1,0 +1,130 @@
+/* The native kernel: poses in, energies and silhouettes out.
+ *
+ * A body of rigid segments (any triangle soup) is seen by V pinhole cameras. Vertices are projected
+ * in double precision and snapped to 1/256 px; from there on a picture is defined by integers alone:
+ *
+ *   - the centre of pixel (x, y) lies at (256 x, 256 y);
+ *   - a triangle covers a pixel whose centre lies inside it, on its left or on its top edge;
+ *     a triangle of zero snapped area covers nothing;
+ *   - the model covers what at least one of its triangles covers. With every triangle oriented by
+ *     the sign of its snapped area, that is where the winding number is positive.
+ *
+ * So only edges at which the signed sum of the neighbouring triangles does not vanish (contours and
+ * borders) are ever drawn, and any two implementations give equal integers. Triangles that leave
+ * the region z >= near, |x|, |y| <= SM_GUARD_PX are clipped to it, in double, before snapping.
+ *
+ * There are no globals, no threads and no allocations: all memory is passed in and may be shared
+ * read-only between threads, but for `scratch`, of which every running call needs its own. Arrays
+ * are row-major. Functions that return int32_t return SM_OK or an error code.
+ */
+#ifndef SM_KERNEL_H
+#define SM_KERNEL_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#define SM_ABI 1
+#define SM_GUARD_PX 16000.0 /* 256 times this fits the snapped coordinates (22 bits and a sign) */
+
+#if defined(_WIN32)
+#define SM_API __declspec(dllexport)
+#else
+#define SM_API __attribute__((visibility("default")))
+#endif
+
+enum { SM_OK = 0, SM_SIZE = 1, SM_INDEX = 2, SM_SCRATCH = 3, SM_PROCESSOR = 4 };
+enum { SM_TRANSLATION = 0, SM_HINGE = 1, SM_SWING = 2 };
+enum { SM_PLANES = 0, SM_MAPS = 1 };
+
+/* A body at one level of detail: J joints, D degrees of freedom, S segments. */
+typedef struct {
+    int32_t joints, dofs, segments, vertices, faces, records;
+    const int32_t *parents;         /* (J), parents before children, -1 for the root */
+    const double *offsets;          /* (J, 3) m, rest position in the parent's space */
+    const int32_t *dof_starts;      /* (J + 1), joint j is moved by the rows [j] to [j + 1] */
+    const int32_t *dof_kinds;       /* (D), a swing takes two rows */
+    const double *dof_axes;         /* (D, 3) unit axes in the joint's space */
+    const int32_t *segment_joints;  /* (S), the joint that carries the segment */
+    const double *spheres;          /* (S, 4) m, centre and radius round the vertices, joint's space */
+    const int32_t *vertex_starts;   /* (S + 1) */
+    const int32_t *face_starts;     /* (S + 1) */
+    const int32_t *record_starts;   /* (S + 1) */
+    const float *x, *y, *z;         /* (vertices) m, in the joint's space */
+    const int32_t *corners;         /* (faces, 3) vertices, counted from the segment's first */
+    const int32_t *record_vertices; /* (records, 2) p and q of an edge, counted likewise */
+    const int32_t *record_faces;    /* (records, 2) two faces that share the edge, counted likewise;
+                                       the segment's number of faces stands for "no face" */
+    const int8_t *record_signs;     /* (records, 2) +1: the face runs from p to q, -1: from q to p */
+} sm_body;
+
+/* V pinhole cameras, each with its own size. Row y of view v is word_widths[v] words from
+ * word_starts[v] + y * word_widths[v] on; bit x & 63 of word x >> 6 is pixel x. */
+typedef struct {
+    int32_t views;
+    int32_t processor;          /* code path: what sm_processor() said, or a lower one */
+    double near;                /* m, distance of the clipping plane in front of the camera */
+    const int32_t *sizes;       /* (V, 2) px, width and height, at most 32767 */
+    const double *projections;  /* (V, 3, 4) world metres to homogeneous px */
+    const double *planes;       /* (V, 9, 4) unit planes in the world, positive inside: near, four
+                                   sides of the guard region, four sides of the picture */
+    const int64_t *word_starts; /* (V + 1) */
+    const int64_t *map_starts;  /* (V + 1), pixels, H * W each */
+    const int64_t *sum_starts;  /* (V + 1), prefix sums, H * (W + 1) each */
+} sm_views;
+
+/* Weights of V views: as two bit planes where all weights are -1, 0 or 1, else as maps. */
+typedef struct {
+    int32_t kind;       /* SM_PLANES: `plus`, `minus`; SM_MAPS: `maps`, `sums` */
+    uint64_t *plus;     /* (words) pixels of weight +1 */
+    uint64_t *minus;    /* (words) pixels of weight -1 */
+    int16_t *maps;      /* (pixels) */
+    int32_t *sums;      /* (sums) of the weights left of each pixel of the row */
+    int64_t *constants; /* (V) energy of an empty rendering */
+    int32_t *rows;      /* (V, 2) first and last row + 1 that hold a weight; set by the kernel */
+} sm_weights;
+
+SM_API int32_t sm_abi(void);           /* SM_ABI; checked at load */
+SM_API const char *sm_sources(void);   /* fingerprint of the sources; a stale library is refused */
+SM_API int32_t sm_processor(void);     /* best code path here: 1 any, 3 x86-64-v3, 4 x86-64-v4 */
+
+/* Whether all indices of the body lie in range and parents come first; to be called once. */
+SM_API int32_t sm_check(const sm_body *, const sm_views *);
+
+/* Bytes of scratch that one call needs. */
+SM_API size_t sm_scratch(const sm_body *, const sm_views *);
+
+/* World from joint of n poses (n, D): out (n, J, 3, 4). */
+SM_API int32_t sm_transforms(const sm_body *, const double *poses, int64_t n, double *out);
+
+/* Fills planes, or prefix sums, and rows from `maps` (pixels of all views, one after the other). */
+SM_API int32_t sm_prepare(const sm_views *, const int16_t *maps, sm_weights *out);
+
+/* Takes fixed pixels out of the weights: out's constants become those of `in` plus the weights
+ * under `fixed` (words). Windows (V, 4), x0, y0, x1, y1 (exclusive) or null: weights outside are
+ * dropped. */
+SM_API int32_t sm_mask(const sm_views *, const sm_weights *in, const uint64_t *fixed,
+                       const int32_t *windows, sm_weights *out);
+
+/* Energies (n, V) of poses (n, D), or (n, V, D) where per_view, of `count` segments. */
+SM_API int32_t sm_energies(const sm_body *, const sm_views *, const sm_weights *,
+                           const double *poses, int64_t n, int32_t per_view,
+                           const int32_t *segments, int32_t count, int64_t *out, void *scratch,
+                           size_t bytes);
+
+/* What segments cover in one pose (D), or (V, D) where per_view: rows of bits, out (words). */
+SM_API int32_t sm_silhouettes(const sm_body *, const sm_views *, const double *pose,
+                              int32_t per_view, const int32_t *segments, int32_t count,
+                              uint64_t *out, void *scratch, size_t bytes);
+
+/* Boxes (n, V, 4), x0, y0, x1, y1 (exclusive) px, unclipped by the picture, round all that the
+ * segments can cover; the whole guard region where a segment leaves it or comes too near. */
+SM_API int32_t sm_bounds(const sm_body *, const sm_views *, const double *poses, int64_t n,
+                         int32_t per_view, const int32_t *segments, int32_t count, int32_t *out,
+                         void *scratch, size_t bytes);
+
+/* Snapped vertices of one pose (D): out (V, vertices, 2) in 1/256 px; INT32_MIN where a vertex
+ * lies outside the guard region. */
+SM_API int32_t sm_snapped(const sm_body *, const sm_views *, const double *pose, int32_t *out,
+                          void *scratch, size_t bytes);
+
+#endif

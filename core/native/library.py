@@ -1,0 +1,118 @@
+"""The native kernel as Python sees it: `kernel.h` declared to ctypes, and the library loaded.
+
+Calls release the GIL. Nothing is checked here that the kernel checks itself; its error codes become
+ValueErrors, as only a programmer's mistake makes them.
+"""
+
+import ctypes
+from ctypes import POINTER, c_double, c_int32, c_int64, c_size_t, c_void_p
+from functools import cache
+from pathlib import Path
+
+from ..errors import MocapError
+from .build import fingerprint, host_target, library_name
+
+ABI = 1
+PLANES, MAPS = 0, 1
+FOLDER = Path(__file__).resolve().parent
+BUILD = f'build it: python -m pip install ziglang, then python "{FOLDER / "build.py"}"'
+_ERRORS = {
+    1: "sizes that do not fit together",
+    2: "an index out of range",
+    3: "too little scratch",
+    4: "an unknown code path",
+}
+
+
+class BodyRecord(ctypes.Structure):
+    """``sm_body`` of kernel.h; the arrays must outlive it."""
+
+    _fields_ = (
+        *((name, c_int32) for name in ("joints", "dofs", "segments", "vertices", "faces", "records")),
+        *((name, c_void_p) for name in ("parents", "offsets", "dof_starts", "dof_kinds", "dof_axes")),
+        *((name, c_void_p) for name in ("segment_joints", "spheres")),
+        *((name, c_void_p) for name in ("vertex_starts", "face_starts", "record_starts")),
+        *((name, c_void_p) for name in ("x", "y", "z", "corners")),
+        *((name, c_void_p) for name in ("record_vertices", "record_faces", "record_signs")),
+    )  # fmt: skip
+
+
+class ViewsRecord(ctypes.Structure):
+    """``sm_views`` of kernel.h."""
+
+    _fields_ = (
+        ("views", c_int32),
+        ("processor", c_int32),
+        ("near", c_double),
+        *((name, c_void_p) for name in ("sizes", "projections", "planes")),
+        *((name, c_void_p) for name in ("word_starts", "map_starts", "sum_starts")),
+    )
+
+
+class WeightsRecord(ctypes.Structure):
+    """``sm_weights`` of kernel.h."""
+
+    _fields_ = (
+        ("kind", c_int32),
+        *((name, c_void_p) for name in ("plus", "minus", "maps", "sums", "constants", "rows")),
+    )
+
+
+def _declare(library: ctypes.CDLL) -> None:
+    body, views, weights = POINTER(BodyRecord), POINTER(ViewsRecord), POINTER(WeightsRecord)
+    pointer, scratch = c_void_p, (c_void_p, c_size_t)
+    segments = (c_void_p, c_int32)
+    signatures = {
+        "sm_abi": (c_int32, ()),
+        "sm_sources": (ctypes.c_char_p, ()),
+        "sm_processor": (c_int32, ()),
+        "sm_check": (c_int32, (body, views)),
+        "sm_scratch": (c_size_t, (body, views)),
+        "sm_transforms": (c_int32, (body, pointer, c_int64, pointer)),
+        "sm_prepare": (c_int32, (views, pointer, weights)),
+        "sm_mask": (c_int32, (views, weights, pointer, pointer, weights)),
+        "sm_energies": (c_int32, (body, views, weights, pointer, c_int64, c_int32, *segments, pointer, *scratch)),
+        "sm_silhouettes": (c_int32, (body, views, pointer, c_int32, *segments, pointer, *scratch)),
+        "sm_bounds": (c_int32, (body, views, pointer, c_int64, c_int32, *segments, pointer, *scratch)),
+        "sm_snapped": (c_int32, (body, views, pointer, pointer, *scratch)),
+    }  # fmt: skip
+    for name, (result, arguments) in signatures.items():
+        function = getattr(library, name)
+        function.restype, function.argtypes = result, arguments
+
+
+@cache
+def load() -> ctypes.CDLL:
+    """The library, checked to fit this code.
+
+    Raises:
+        MocapError: it is missing, cannot be loaded, or was built from other sources.
+    """
+    path = FOLDER / library_name(host_target())
+    if not path.exists():
+        raise MocapError("the native kernel is missing", BUILD, file=path)
+    try:
+        library = ctypes.CDLL(str(path))
+        library.sm_sources.restype = ctypes.c_char_p
+        current = library.sm_abi() == ABI and _is_current(library.sm_sources().decode())
+    except (OSError, AttributeError) as error:
+        raise MocapError(
+            f"the native kernel cannot be loaded ({error})", BUILD, file=path
+        ) from error
+    if not current:
+        raise MocapError("the native kernel was built from other sources", BUILD, file=path)
+    _declare(library)
+    return library
+
+
+def _is_current(built_from: str) -> bool:
+    """Whether the library fits the sources beside it; installed without sources, it does."""
+    return fingerprint(FOLDER) in ("", built_from)
+
+
+def check(code: int) -> None:
+    """Raises a ValueError unless ``code`` is SM_OK."""
+    if code:
+        raise ValueError(
+            f"the native kernel refuses {_ERRORS.get(code, f'the call (code {code})')}"
+        )

@@ -1,0 +1,64 @@
+/* Forward kinematics from the DOF table, in double precision. */
+#include "internal.h"
+
+#include <math.h>
+#include <string.h>
+
+/* motion = motion * rotation by the rotation vector r (Rodrigues); both 3 x 4. */
+static void rotate(double *motion, const double *r) {
+    double square = r[0] * r[0] + r[1] * r[1] + r[2] * r[2], angle = sqrt(square);
+    if (angle == 0.0) return;
+    double half = sin(0.5 * angle), s = sin(angle) / angle, c = 2.0 * half * half / square;
+    double m[9] = {
+        1.0 - c * (r[1] * r[1] + r[2] * r[2]), c * r[0] * r[1] - s * r[2], c * r[0] * r[2] + s * r[1],
+        c * r[0] * r[1] + s * r[2], 1.0 - c * (r[0] * r[0] + r[2] * r[2]), c * r[1] * r[2] - s * r[0],
+        c * r[0] * r[2] - s * r[1], c * r[1] * r[2] + s * r[0], 1.0 - c * (r[0] * r[0] + r[1] * r[1])};
+    for (int i = 0; i < 3; i++) {
+        double *row = motion + 4 * i, a = row[0], b = row[1], d = row[2];
+        for (int j = 0; j < 3; j++) row[j] = a * m[j] + b * m[3 + j] + d * m[6 + j];
+    }
+}
+
+/* motion = motion * translation by t. */
+static void translate(double *motion, const double *t) {
+    for (int i = 0; i < 3; i++) {
+        double *row = motion + 4 * i;
+        row[3] += row[0] * t[0] + row[1] * t[1] + row[2] * t[2];
+    }
+}
+
+static void scaled_axis(double *out, const double *axis, double value) {
+    for (int k = 0; k < 3; k++) out[k] = axis[k] * value;
+}
+
+void sm_pose_transforms(const sm_body *body, const double *pose, const uint8_t *needed,
+                        double *out) {
+    static const double identity[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+    for (int32_t j = 0; j < body->joints; j++) {
+        if (needed && !needed[j]) continue;
+        double *m = out + 12 * j, v[3];
+        int32_t parent = body->parents[j];
+        memcpy(m, parent < 0 ? identity : out + 12 * parent, sizeof identity);
+        translate(m, body->offsets + 3 * j);
+        for (int32_t d = body->dof_starts[j]; d < body->dof_starts[j + 1]; d++) {
+            const double *axis = body->dof_axes + 3 * d;
+            scaled_axis(v, axis, pose[d]);
+            if (body->dof_kinds[d] == SM_TRANSLATION) {
+                translate(m, v);
+                continue;
+            }
+            if (body->dof_kinds[d] == SM_SWING) {
+                d++;
+                for (int k = 0; k < 3; k++) v[k] += axis[3 + k] * pose[d];
+            }
+            rotate(m, v);
+        }
+    }
+}
+
+void sm_need(const sm_body *body, const int32_t *segments, int32_t count, sm_work *work) {
+    memset(work->needed, 0, (size_t)body->joints);
+    for (int32_t k = 0; k < count; k++) work->needed[body->segment_joints[segments[k]]] = 1;
+    for (int32_t j = body->joints - 1; j > 0; j--)
+        if (work->needed[j] && body->parents[j] >= 0) work->needed[body->parents[j]] = 1;
+}

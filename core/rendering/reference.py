@@ -1,0 +1,221 @@
+"""The oracle: the energy as its definition says it, pixel by pixel and triangle by triangle.
+
+Slow and obvious. Every triangle is projected in float64, clipped where it must be, snapped to
+1/256 px, and tested by integer edge functions against every pixel centre of its bounding box, with
+the top-left rule. Fast backends must give the same integers.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..body.body import Body
+from ..body.kinematics import joint_transforms
+from ..cameras.camera import Camera
+from ..energy.evaluator import WeightMaps
+from .model import GUARD_PX, NEAR
+
+
+@dataclass(frozen=True, eq=False)
+class ReferenceWeights:
+    """Weight maps as they are.
+
+    Attributes:
+        maps: V arrays (H, W) int64.
+        constants: (V,) int64.
+    """
+
+    maps: tuple[np.ndarray, ...]
+    constants: np.ndarray
+
+
+def homogeneous_px(projection: np.ndarray, transform: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """(n, 3) homogeneous px of points (n, 3) given in a joint's space.
+
+    Products and sums are taken one by one in the kernel's order, so that the bits are the same.
+    """
+    p, m = projection, transform
+    a = p[:, 0, None] * m[0] + p[:, 1, None] * m[1] + p[:, 2, None] * m[2]
+    a[:, 3] += p[:, 3]
+    x, y, z = np.asarray(points, float).T[:, :, None]
+    return a[:, 0] * x + a[:, 1] * y + a[:, 2] * z + a[:, 3]
+
+
+def snapped_px(h: np.ndarray) -> np.ndarray:
+    """(n, 2) int64 coordinates in 1/256 px of homogeneous points (n, 3)."""
+    return np.rint(h[:, :2] * (1.0 / h[:, 2:]) * 256.0).astype(np.int64)
+
+
+def plane_distances(h: np.ndarray) -> np.ndarray:
+    """(n, 5) signed distances to the near plane and the guard region's sides, positive inside."""
+    x, y, depth = h.T
+    sides = GUARD_PX * depth + x, GUARD_PX * depth - x, GUARD_PX * depth + y, GUARD_PX * depth - y
+    return np.stack([depth - NEAR, *sides], axis=1)
+
+
+def clipped_polygon(corners: np.ndarray) -> np.ndarray:
+    """(m, 3) what is left of a triangle (3, 3) in front of all planes (Sutherland and Hodgman).
+
+    A cut is computed from the inner point outwards, so that neighbouring triangles agree on it.
+    """
+    for plane in range(5):
+        distances = plane_distances(corners)[:, plane] if len(corners) else []
+        kept = []
+        for i, d in enumerate(distances):
+            j = (i + 1) % len(corners)
+            if d >= 0:
+                kept.append(corners[i])
+            if (d >= 0) != (distances[j] >= 0):
+                inner, outer = (i, j) if d >= 0 else (j, i)
+                t = distances[inner] / (distances[inner] - distances[outer])
+                kept.append(corners[inner] + t * (corners[outer] - corners[inner]))
+        corners = np.reshape(kept, (-1, 3))
+    return corners
+
+
+def covered_pixels(corners: np.ndarray, shape: tuple[int, int]) -> tuple[slice, slice, np.ndarray]:
+    """Rows, columns and (h, w) bool: the pixels that a snapped triangle (3, 2) covers.
+
+    A pixel belongs to the triangle where its centre (256 x, 256 y) lies inside, or on a left edge,
+    or on a top edge: shared edges are then counted exactly once.
+    """
+    (ax, ay), (bx, by), (cx, cy) = corners
+    area = (bx - ax) * (cy - ay) - (cx - ax) * (by - ay)
+    if area < 0:
+        corners = corners[::-1]
+    low = np.clip(-(-corners.min(axis=0) // 256), 0, shape[::-1])
+    high = np.clip(corners.max(axis=0) // 256 + 1, low, shape[::-1])
+    rows, columns = slice(low[1], high[1]), slice(low[0], high[0])
+    y, x = 256 * np.mgrid[rows, columns]
+    covered = np.full(x.shape, area != 0)
+    for (x0, y0), (x1, y1) in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+        side = (x1 - x0) * (y - y0) - (y1 - y0) * (x - x0)
+        is_top, is_left = y1 == y0 and x1 > x0, y1 < y0
+        covered &= (side >= 0) if is_top or is_left else (side > 0)
+    return rows, columns, covered
+
+
+class ReferenceEvaluator:
+    """Energies and silhouettes by definition; see `energy.evaluator.Evaluator`.
+
+    Args:
+        body: the model.
+        cameras: V pinhole cameras.
+        level: which of the body's surfaces to draw.
+
+    Raises:
+        ValueError: a camera with lens distortion.
+    """
+
+    def __init__(self, body: Body, cameras: Sequence[Camera], level: int = 0):
+        if not all(camera.is_pinhole for camera in cameras):
+            raise ValueError("expected pinhole cameras")
+        self.body, self.cameras, self.level = body, tuple(cameras), level
+
+    def prepared(self, maps: WeightMaps) -> ReferenceWeights:
+        """The maps as int64."""
+        wide = tuple(np.asarray(m, np.int64) for m in maps.maps)
+        return ReferenceWeights(wide, np.array(maps.constants, np.int64))
+
+    def masked(
+        self,
+        weights: ReferenceWeights,
+        pose: np.ndarray,
+        moving: Sequence[int],
+        windows: np.ndarray | None = None,
+    ) -> ReferenceWeights:
+        """Weights under which the ``moving`` segments alone give the full energy."""
+        fixed = [s for s in range(len(self.body.segment_names)) if s not in set(moving)]
+        maps, constants = [], []
+        covered = self.silhouettes(pose, fixed)
+        for v, (weight_map, picture) in enumerate(zip(weights.maps, covered, strict=True)):
+            constants.append(weights.constants[v] + weight_map[picture].sum())
+            left = np.where(picture, 0, weight_map)
+            if windows is not None:
+                x0, y0, x1, y1 = np.maximum(windows[v], 0)
+                inside = np.zeros_like(picture)
+                inside[y0:y1, x0:x1] = True
+                left = np.where(inside, left, 0)
+            maps.append(left)
+        return ReferenceWeights(tuple(maps), np.array(constants, np.int64))
+
+    def energies(
+        self, weights: ReferenceWeights, poses: np.ndarray, segments: Sequence[int] | None = None
+    ) -> np.ndarray:
+        """(N, V) int64 energies of poses (N, D) or (N, V, D), of all or the given segments."""
+        poses = np.asarray(poses, float)
+        energies = np.empty((len(poses), len(self.cameras)), np.int64)
+        for row, pose in zip(energies, poses, strict=True):
+            for v, picture in enumerate(self.silhouettes(pose, segments)):
+                row[v] = weights.constants[v] + weights.maps[v][picture].sum()
+        return energies
+
+    def silhouettes(
+        self, pose: np.ndarray, segments: Sequence[int] | None = None
+    ) -> tuple[np.ndarray, ...]:
+        """V boolean pictures (H, W), True where the body covers the pixel's centre."""
+        if segments is None:
+            segments = range(len(self.body.segment_names))
+        pictures = []
+        for view, camera in enumerate(self.cameras):
+            picture = np.zeros(camera.size[::-1], bool)
+            for corners in self._snapped_triangles(pose, view, segments):
+                rows, columns, covered = covered_pixels(corners, picture.shape)
+                picture[rows, columns] |= covered
+            pictures.append(picture)
+        return tuple(pictures)
+
+    def bounds(self, poses: np.ndarray, segments: Sequence[int]) -> np.ndarray:
+        """(N, V, 4) int: x0, y0, x1, y1 (exclusive), px that the segments can cover, unclipped.
+
+        The whole guard region where a segment leaves it or comes too near.
+        """
+        boxes = np.zeros((len(poses), len(self.cameras), 4), np.int32)
+        guard = int(GUARD_PX)
+        for n, pose in enumerate(np.asarray(poses, float)):
+            for v in range(len(self.cameras)):
+                h = np.concatenate(
+                    [np.zeros((0, 3)), *(self._projected(pose, v, s) for s in segments)]
+                )
+                if not (plane_distances(h) >= 0).all():
+                    boxes[n, v] = -guard, -guard, guard, guard
+                elif len(h):
+                    px = snapped_px(h)
+                    boxes[n, v] = -(-np.concatenate([px.min(axis=0), px.max(axis=0)]) // 256)
+        return boxes
+
+    def snapped(self, pose: np.ndarray) -> np.ndarray:
+        """(V, n, 2) int32 vertices in 1/256 px; the lowest int32 where one is clipped away."""
+        count = len(self.body.surfaces[self.level].vertices)
+        vertices = np.full((len(self.cameras), count, 2), np.iinfo(np.int32).min, np.int32)
+        for v in range(len(self.cameras)):
+            segments = range(len(self.body.segment_names))
+            h = np.concatenate([self._projected(pose, v, s) for s in segments])
+            inside = (plane_distances(h) >= 0).all(axis=1)
+            vertices[v, inside] = snapped_px(h[inside])
+        return vertices
+
+    def _projected(self, pose: np.ndarray, view: int, segment: int) -> np.ndarray:
+        """(n, 3) homogeneous px of a segment's vertices."""
+        surface = self.body.surfaces[self.level]
+        pose = np.asarray(pose, float)
+        transforms = joint_transforms(
+            self.body, np.atleast_2d(pose if pose.ndim == 1 else pose[view])
+        )
+        begin, end = surface.vertex_starts[segment : segment + 2]
+        transform = transforms[0, self.body.segment_joints[segment]]
+        return homogeneous_px(self.cameras[view].projection, transform, surface.vertices[begin:end])
+
+    def _snapped_triangles(self, pose: np.ndarray, view: int, segments: Sequence[int]):
+        """Yields (3, 2) int64 triangles, clipped where they leave the region that can be drawn."""
+        surface = self.body.surfaces[self.level]
+        for segment in segments:
+            h = self._projected(pose, view, segment)
+            inside = (plane_distances(h) >= 0).all(axis=1)
+            begin, end = surface.triangle_starts[segment : segment + 2]
+            for triangle in surface.triangles[begin:end] - surface.vertex_starts[segment]:
+                whole = inside[triangle].all()
+                polygon = snapped_px(h[triangle] if whole else clipped_polygon(h[triangle]))
+                for i in range(1, len(polygon) - 1):
+                    yield polygon[[0, i, i + 1]]
