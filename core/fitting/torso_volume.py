@@ -1,0 +1,63 @@
+"""Whether a limb has entered the torso.
+
+The torso is taken as one ellipsoid per torso segment, inscribed in the segment's box. Points of a
+limb beyond its first joint may not lie inside (SPEC §5: such candidates are dropped before any
+evaluation).
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..body.body import Body, Part
+from ..body.kinematics import joint_transforms
+
+_SHARE = 0.75
+"""Size of the forbidden core relative to the segment's box: flesh gives way, ribs do not."""
+
+
+@dataclass(frozen=True, eq=False)
+class TorsoVolume:
+    """Ellipsoids of the torso's segments, in the spaces of their joints.
+
+    Attributes:
+        body: whose torso.
+        joints: (K,) joint of each ellipsoid.
+        centres: (K, 3) metres.
+        radii: (K, 3) metres.
+    """
+
+    body: Body
+    joints: np.ndarray
+    centres: np.ndarray
+    radii: np.ndarray
+
+    @classmethod
+    def of(cls, body: Body) -> "TorsoVolume":
+        """The torso of ``body``: every segment that belongs to no limb and no end."""
+        moving = {s for part in body.parts if part.role in ("limb", "end") for s in part.segments}
+        torso = [s for s in range(len(body.segment_names)) if s not in moving]
+        surface = body.surfaces[0]
+        boxes = [_box(surface.vertices[slice(*surface.vertex_starts[s : s + 2])]) for s in torso]
+        centres = np.array([(low + high) / 2 for low, high in boxes]).reshape(-1, 3)
+        radii = np.array([_SHARE * (high - low) / 2 for low, high in boxes]).reshape(-1, 3)
+        return cls(body, body.segment_joints[torso], centres, radii)
+
+    def holds_limb(self, poses: np.ndarray, part: Part) -> np.ndarray:
+        """(N,) bool: whether a joint beyond the part's first, or a bone's end, lies inside."""
+        transforms = joint_transforms(self.body, poses)
+        joints = np.unique(self.body.segment_joints[list(part.segments)])
+        carried = transforms[:, joints]
+        tails = (
+            np.einsum("njab,jb->nja", carried[..., :3], self.body.tails[joints]) + carried[..., 3]
+        )
+        points = np.concatenate([carried[:, 1:, :, 3], tails], axis=1)
+        torso = transforms[:, self.joints]
+        local = np.einsum(
+            "nkab,npka->npkb", torso[..., :3], points[:, :, None] - torso[:, None, :, :, 3]
+        )
+        return (((local - self.centres) / self.radii) ** 2).sum(axis=3).min(axis=(1, 2)) < 1.0
+
+
+def _box(vertices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    return vertices.min(axis=0), vertices.max(axis=0)

@@ -1,0 +1,52 @@
+"""Frames in order: each starts from the pose of the one before and a prediction."""
+
+import time
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..silhouettes.silhouette import Silhouette
+from .hierarchical import HierarchicalTracker
+from .scores import FrameScores, frame_scores
+
+_DAMPING = 0.7
+"""Share of the last frame's movement that is expected to go on."""
+
+
+@dataclass(frozen=True, eq=False)
+class FrameFit:
+    """One tracked frame.
+
+    Attributes:
+        frame: its number.
+        pose: (D,).
+        scores: how well the pose explains the silhouettes.
+        evaluations: candidates evaluated.
+        windows_left: how often a part was left outside its window.
+        seconds: time the fit took, without reading the footage.
+    """
+
+    frame: int
+    pose: np.ndarray
+    scores: FrameScores
+    evaluations: int
+    windows_left: int
+    seconds: float
+
+
+def track(
+    tracker: HierarchicalTracker,
+    first_pose: np.ndarray,
+    frames: Iterable[tuple[int, tuple[Silhouette, ...]]],
+) -> Iterator[FrameFit]:
+    """The fits of ``frames`` in their order, the first searched from ``first_pose`` (D,)."""
+    last = predicted = first_pose
+    for frame, silhouettes in frames:
+        start = time.perf_counter()
+        fit = tracker.fit(silhouettes, last, predicted)
+        predicted = fit.pose + _DAMPING * (fit.pose - last)
+        last = fit.pose
+        scores = frame_scores(tracker.evaluator, fit.pose, silhouettes)
+        seconds = time.perf_counter() - start
+        yield FrameFit(frame, fit.pose, scores, fit.evaluations, fit.windows_left, seconds)
