@@ -1,0 +1,15 @@
+"""The add-on: everything that imports bpy. Reads the scene, calls core, writes the result back."""
+
+
+def register():
+    """Registers everything the add-on gives Blender."""
+    from . import cli
+
+    cli.register()
+
+
+def unregister():
+    """Takes back what `register` gave, in reverse order."""
+    from . import cli
+
+    cli.unregister()

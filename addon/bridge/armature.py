@@ -1,0 +1,87 @@
+"""A body as an armature: one bone per joint.
+
+A bone's head is the joint, its tail the end that the body names. Rolls follow one rule: the bone's
+Z points to the performer's front, or up where the bone itself points to the front (feet). So X is
+the axis of flexion everywhere and the two sides mirror each other, as Blender's pose tools expect.
+"""
+
+import bpy
+import numpy as np
+from mathutils import Vector
+
+from ...core.body.body import Body
+
+SHORTEST_BONE = 1e-3
+"""Metres; Blender silently removes bones of no length."""
+
+_SIDES = {"left_": ".L", "right_": ".R"}
+_FRONT, _UP = np.array([0.0, -1.0, 0.0]), np.array([0.0, 0.0, 1.0])
+
+
+def bone_names(body: Body) -> tuple[str, ...]:
+    """J names in Blender's style: ``left_elbow`` becomes ``elbow.L``."""
+    return tuple(_bone_name(name) for name in body.joint_names)
+
+
+def _bone_name(joint: str) -> str:
+    for prefix, suffix in _SIDES.items():
+        if joint.startswith(prefix):
+            return joint.removeprefix(prefix) + suffix
+    return joint
+
+
+def rest_joints(body: Body) -> np.ndarray:
+    """(J, 3) joints of the rest pose in world metres."""
+    joints = np.array(body.offsets)
+    for joint, parent in enumerate(body.parents):
+        if parent >= 0:
+            joints[joint] += joints[parent]
+    return joints
+
+
+def add_armature(
+    body: Body, name: str, parent: bpy.types.Object, collection: bpy.types.Collection
+) -> bpy.types.Object:
+    """A new armature in the rest pose of ``body``, in quaternion mode; mode and selection stay.
+
+    Raises:
+        ValueError: a bone shorter than `SHORTEST_BONE`.
+    """
+    too_short = np.linalg.norm(body.tails, axis=1) < SHORTEST_BONE
+    if too_short.any():
+        raise ValueError(f"expected a tail off joint {body.joint_names[int(np.argmax(too_short))]}")
+    placed = bpy.data.objects.new(name, bpy.data.armatures.new(name))
+    _add_bones(placed, body)
+    collection.objects.link(placed)
+    placed.parent = parent
+    placed.show_in_front = True
+    for bone in placed.pose.bones:
+        bone.rotation_mode = "QUATERNION"
+    return placed
+
+
+def _add_bones(placed: bpy.types.Object, body: Body) -> None:
+    """Adds bones in a scene of their own, for edit mode needs one and the user's is not ours."""
+    scene = bpy.data.scenes.new("Bones")
+    layer = scene.view_layers[0]
+    scene.collection.objects.link(placed)
+    layer.objects.active = placed
+    try:
+        with bpy.context.temp_override(scene=scene, view_layer=layer, active_object=placed):
+            bpy.ops.object.mode_set(mode="EDIT")
+            _fill(placed.data.edit_bones, body)
+            bpy.ops.object.mode_set(mode="OBJECT")
+    finally:
+        bpy.data.scenes.remove(scene)
+
+
+def _fill(bones: bpy.types.ArmatureEditBones, body: Body) -> None:
+    names, heads = bone_names(body), rest_joints(body)
+    for joint, name in enumerate(names):
+        bone = bones.new(name)
+        bone.head, bone.tail = heads[joint], heads[joint] + body.tails[joint]
+        direction = body.tails[joint] / np.linalg.norm(body.tails[joint])
+        faces_front = abs(direction @ _FRONT) > np.cos(np.radians(30))
+        bone.align_roll(Vector(_UP if faces_front else _FRONT))
+        if body.parents[joint] >= 0:
+            bone.parent = bones[names[body.parents[joint]]]
