@@ -31,7 +31,8 @@ def read_picture(
 ) -> np.ndarray:
     """The picture of ``path`` as stored: (H, W), (H, W, 3) BGR or (H, W, 4) BGRA.
 
-    Elements are uint8, uint16 or float. The orientation tag of JPEG files is obeyed, as players and OpenCV's videos do.
+    Elements are uint8, uint16 or float. The orientation tag of JPEG files is obeyed, as players
+    and OpenCV's videos do.
 
     Args:
         path: the file.
