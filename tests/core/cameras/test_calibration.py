@@ -226,7 +226,7 @@ TOML = CalibrationSettings(format="toml")
 
 @pytest.mark.parametrize("choice", [{"format": "yaml"}, {"units": "feet"}, {"up": "w"}])
 def test_unknown_choices_name_the_known_ones(choice):
-    with pytest.raises(MocapError, match="unknown .* use "):
+    with pytest.raises(MocapError, match=r"unknown .* use "):
         CalibrationSettings(**choice)
 
 

@@ -79,7 +79,7 @@ def test_halving_a_picture_keeps_its_corners_in_place():
     [
         {"camera_from_world": LOOKING_ALONG_Y * [[1], [1], [-1]]},
         {"camera_from_world": LOOKING_ALONG_Y * 1.1},
-        {"matrix": MATRIX + [[0, 3.0, 0], [0, 0, 0], [0, 0, 0]]},
+        {"matrix": MATRIX + np.diag([3.0, 0.0], k=1)},
         {"matrix": np.diag([-100.0, 100, 1])},
         {"matrix": MATRIX * np.nan},
         {"distortion": [0.1, 0.2, 0.3]},
