@@ -1,8 +1,11 @@
 """A body as an armature: one bone per joint.
 
-A bone's head is the joint, its tail the end that the body names. Rolls follow one rule: the bone's
-Z points to the performer's front, or up where the bone itself points to the front (feet). So X is
-the axis of flexion everywhere and the two sides mirror each other, as Blender's pose tools expect.
+A bone's head is the joint, its tail the end that the body names; a joint that is itself an end,
+such as the top of the head, gets a short bone that goes on from its parent's.
+
+Rolls follow one rule: the bone's Z points to the performer's front, or up where the bone itself
+points to the front (feet). So X is the axis of flexion everywhere and the two sides mirror each
+other, as Blender's pose tools expect.
 """
 
 import bpy
@@ -11,8 +14,8 @@ from mathutils import Vector
 
 from ...core.body.body import Body
 
-SHORTEST_BONE = 1e-3
-"""Metres; Blender silently removes bones of no length."""
+END_LENGTH = 0.02
+"""Metres, the bone of an end; Blender silently removes bones of no length."""
 
 _SIDES = {"left_": ".L", "right_": ".R"}
 _FRONT, _UP = np.array([0.0, -1.0, 0.0]), np.array([0.0, 0.0, 1.0])
@@ -42,14 +45,7 @@ def rest_joints(body: Body) -> np.ndarray:
 def add_armature(
     body: Body, name: str, parent: bpy.types.Object, collection: bpy.types.Collection
 ) -> bpy.types.Object:
-    """A new armature in the rest pose of ``body``, in quaternion mode; mode and selection stay.
-
-    Raises:
-        ValueError: a bone shorter than `SHORTEST_BONE`.
-    """
-    too_short = np.linalg.norm(body.tails, axis=1) < SHORTEST_BONE
-    if too_short.any():
-        raise ValueError(f"expected a tail off joint {body.joint_names[int(np.argmax(too_short))]}")
+    """A new armature in the rest pose of ``body``, in quaternion mode; mode and selection stay."""
     placed = bpy.data.objects.new(name, bpy.data.armatures.new(name))
     _add_bones(placed, body)
     collection.objects.link(placed)
@@ -76,12 +72,22 @@ def _add_bones(placed: bpy.types.Object, body: Body) -> None:
 
 
 def _fill(bones: bpy.types.ArmatureEditBones, body: Body) -> None:
-    names, heads = bone_names(body), rest_joints(body)
+    names, heads, tails = bone_names(body), rest_joints(body), _visible_tails(body)
     for joint, name in enumerate(names):
         bone = bones.new(name)
-        bone.head, bone.tail = heads[joint], heads[joint] + body.tails[joint]
-        direction = body.tails[joint] / np.linalg.norm(body.tails[joint])
+        bone.head, bone.tail = heads[joint], heads[joint] + tails[joint]
+        direction = tails[joint] / np.linalg.norm(tails[joint])
         faces_front = abs(direction @ _FRONT) > np.cos(np.radians(30))
         bone.align_roll(Vector(_UP if faces_front else _FRONT))
         if body.parents[joint] >= 0:
             bone.parent = bones[names[body.parents[joint]]]
+
+
+def _visible_tails(body: Body) -> np.ndarray:
+    """(J, 3) tails in the joints' spaces, none of them without length."""
+    tails = np.array(body.tails)
+    for joint in np.flatnonzero(np.linalg.norm(tails, axis=1) < 1e-3):
+        parent = body.parents[joint]
+        along = tails[parent] if parent >= 0 else _UP
+        tails[joint] = along * END_LENGTH / np.linalg.norm(along)
+    return tails
