@@ -60,7 +60,8 @@ def read_trc(path: Path) -> Trajectories:
     """The points in ``path``, in metres with Z up.
 
     Raises:
-        MocapError: the file cannot be read, is no TRC file, or a row does not fit its header.
+        MocapError: the file cannot be read, is no TRC file, holds no frames, or a row does not fit
+            the header.
     """
     try:
         lines = path.read_text(encoding="utf-8").splitlines()
@@ -76,7 +77,9 @@ def read_trc(path: Path) -> Trajectories:
         for number, line in enumerate(lines[_DATA_LINE:], _DATA_LINE + 1)
         if line.strip()
     ]
-    values = np.array(rows).reshape(-1, 2 + 3 * len(names))
+    if not rows:
+        raise MocapError("holds no frames", "write the file again", file=path)
+    values = np.array(rows)
     points = values[:, 2:].reshape(len(rows), len(names), 3)[..., [2, 0, 1]] * scale
     return Trajectories(points, names, fps, values[:, 0].astype(int))
 
