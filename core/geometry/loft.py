@@ -1,9 +1,9 @@
 """Closed meshes drawn through cross-sections along a straight axis.
 
 A cross-section is made of four quarters of superellipses, |x / a|^n + |y / b|^n = 1, one radius
-for each of the four directions outer, inner, front and back. Between the given sections the radii follow
-a monotone cubic (no overshoot: a thigh never grows thicker than its sections say); beyond the first
-and last section the surface closes as half an ellipsoid.
+for each of the four directions outer, inner, front and back. Between the given sections the radii
+follow a monotone cubic (no overshoot: a thigh never grows thicker than its sections say); beyond
+the first and last section the surface closes as half an ellipsoid.
 """
 
 from dataclasses import dataclass
@@ -66,33 +66,47 @@ class Profile:
         return np.r_[start[::-1], body, end], np.concatenate([caps[0][::-1], radii, caps[1]])
 
 
-def chosen_samples(curve: np.ndarray, count: int) -> np.ndarray:
-    """(count,) rising indices of the samples (M, K) whose polyline stays nearest to the curve.
+def chosen_samples(stations: np.ndarray, radii: np.ndarray, count: int) -> np.ndarray:
+    """(count,) rising indices of samples between which straight interpolation serves best.
 
-    The two ends are always taken; then, one by one, the sample farthest from the polyline so far
-    (Douglas and Peucker 1973).
+    The two ends are always taken; then, one by one, the gap with the largest area between outline
+    and chord is split where they are farthest apart (after Douglas and Peucker 1973, who split by
+    distance alone and so spend their samples on the blunt ends, which joints hide).
     """
-    chosen = [0, len(curve) - 1]
-    while len(chosen) < min(count, len(curve)):
-        gaps = np.zeros(len(curve))
-        for i, j in pairwise(chosen):
-            gaps[i : j + 1] = _distances_to_chord(curve[i : j + 1])
-        chosen = sorted([*chosen, int(np.argmax(gaps))])
+    chosen = [0, len(stations) - 1]
+    while len(chosen) < min(count, len(stations)):
+        splits = [_split(stations, radii, i, j) for i, j in pairwise(chosen)]
+        chosen = sorted([*chosen, max(splits)[1]])
     return np.array(chosen)
 
 
-def _distances_to_chord(curve: np.ndarray) -> np.ndarray:
-    chord = curve[-1] - curve[0]
-    offsets = curve - curve[0]
-    along = np.clip(offsets @ chord / max(chord @ chord, 1e-30), 0, 1)
-    return np.linalg.norm(offsets - along[:, None] * chord, axis=1)
+def _split(stations: np.ndarray, radii: np.ndarray, start: int, end: int) -> tuple[float, int]:
+    """Area between outline and chord from sample ``start`` to ``end``, and the farthest sample."""
+    if end - start < 2:
+        return -1.0, start
+    s, r = stations[start : end + 1], radii[start : end + 1]
+    share = (s - s[0])[:, None] / (s[-1] - s[0])
+    gaps = np.abs(r - r[0] - share * (r[-1] - r[0])).sum(axis=1)
+    return float(((gaps[1:] + gaps[:-1]) * np.diff(s)).sum() / 2), start + int(np.argmax(gaps))
+
+
+def fitted_sections(stations: np.ndarray, radii: np.ndarray, picked: np.ndarray) -> np.ndarray:
+    """(len(picked), 4) radii whose straight interpolation is nearest to all samples' radii.
+
+    Rings on the surface itself would lie inside it wherever it bulges; these lie astride. The
+    poles at both ends keep no radius.
+    """
+    hats = np.array([np.interp(stations, stations[picked], unit) for unit in np.eye(len(picked))])
+    fitted = np.zeros((len(picked), 4))
+    fitted[1:-1] = np.linalg.lstsq(hats[1:-1].T, radii, rcond=None)[0]
+    return np.maximum(fitted, 0)
 
 
 def rings(radii: np.ndarray, exponent: float, sides: int) -> np.ndarray:
     """(K, sides, 2) points outwards and frontwards of sections with ``radii`` (K, 4).
 
-    They are widened by 1 / sqrt(cos(pi / sides)), midway between the polygon inside the section
-    and the one around it, so that the area seen from the side is kept.
+    They are widened by (pi / sides) / sin(pi / sides): then the polygon's perimeter, and with it
+    its mean width over all directions (Cauchy), is the ellipse's, and silhouettes keep their area.
     """
     angles = 2 * np.pi * np.arange(sides) / sides
     unit = np.stack([np.cos(angles), np.sin(angles)], -1)
@@ -101,7 +115,7 @@ def rings(radii: np.ndarray, exponent: float, sides: int) -> np.ndarray:
     positive = unit > 0
     widths = np.where(positive[:, 0], radii[:, :1], radii[:, 1:2])
     depths = np.where(positive[:, 1], radii[:, 2:3], radii[:, 3:])
-    return unit * np.stack([widths, depths], -1) / np.sqrt(np.cos(np.pi / sides))
+    return unit * np.stack([widths, depths], -1) / np.sinc(1 / sides)
 
 
 def lofted(
@@ -127,9 +141,10 @@ def lofted(
     front = front - (front @ along) * along
     front = front / np.linalg.norm(front)
     outer = np.cross(front, along)
-    picked = chosen_samples(np.c_[stations * np.linalg.norm(axis), radii], count + 2)
+    picked = chosen_samples(stations, radii, count + 2)
     centres = start + stations[picked, None] * axis
-    sections = rings(radii[picked[1:-1]], profile.exponent, sides)
+    fitted = fitted_sections(stations, radii, picked)
+    sections = rings(fitted[1:-1], profile.exponent, sides)
     points = centres[1:-1, None] + sections[..., :1] * outer + sections[..., 1:] * front
     vertices = np.concatenate([centres[:1], points.reshape(-1, 3), centres[-1:]])
     return vertices, tube_triangles(sides, count)

@@ -26,7 +26,7 @@ FOOT = np.array([np.sin(TOE_OUT), -np.cos(TOE_OUT), 0.0])
 PALM = np.cross(ARM, FORWARD)
 """The way the left palm looks: inwards and down."""
 THUMB = (ARM + 0.55 * FORWARD + 0.15 * PALM) / np.linalg.norm(ARM + 0.55 * FORWARD + 0.15 * PALM)
-CHIN = np.array([0.0, -0.62, -0.78])
+CHIN = np.array([0.0, -0.38, -0.925])
 
 BALL_HEIGHT = 0.3
 """Height of the toe joint as a share of the ankle's."""
@@ -41,10 +41,10 @@ def landmarks(p: Proportions) -> dict[str, np.ndarray]:
     """Name -> (3,) world metres in the rest pose."""
     leg = (p.thigh + p.shank) * LEG
     root = (p.ankle_height - leg[2]) * UP
-    waist = root + p.lower_spine * _leaning(0.17)
+    waist = root + p.lower_spine * _leaning(0.10)
     chest = waist + p.middle_spine * _leaning(0.06)
-    neck = chest + p.upper_spine * _leaning(-0.05)
-    head = neck + p.neck * _leaning(-0.18)
+    neck = chest + p.upper_spine * _leaning(-0.06)
+    head = neck + p.neck * _leaning(-0.20)
     skull = head + p.skull * _leaning(-0.30)
     return {
         "root": root,
@@ -54,7 +54,7 @@ def landmarks(p: Proportions) -> dict[str, np.ndarray]:
         "head": head,
         "skull": skull,
         "head_end": skull + p.crown * UP,
-        "chin": skull + 1.36 * p.crown * CHIN,
+        "chin": skull + 1.40 * p.crown * CHIN,
         **_leg(p, root),
         **_arm(p, neck),
     }

@@ -40,21 +40,21 @@ class Loft:
 
 
 LOFTS = {
-    "pelvis": Loft("root", "waist", FORWARD, (14, 6)),
-    "abdomen": Loft("waist", "chest", FORWARD, (14, 4)),
+    "pelvis": Loft("root", "waist", FORWARD, (14, 5)),
+    "abdomen": Loft("waist", "chest", FORWARD, (14, 5)),
     "chest": Loft("chest", "neck", FORWARD, (14, 6)),
     "neck": Loft("neck", "head", FORWARD, (10, 3)),
     "skull": Loft("head", "head_end", FORWARD, (12, 6)),
-    "jaw": Loft("skull", "chin", FORWARD, (10, 4)),
-    "clavicle": Loft("left_clavicle_root", "left_shoulder", FORWARD, (10, 5)),
-    "upper_arm": Loft("left_shoulder", "left_elbow", FORWARD, (8, 6)),
-    "forearm": Loft("left_elbow", "left_wrist", FORWARD, (8, 6)),
+    "jaw": Loft("skull", "chin", FORWARD, (10, 3)),
+    "clavicle": Loft("left_clavicle_root", "left_shoulder", FORWARD, (8, 4)),
+    "upper_arm": Loft("left_shoulder", "left_elbow", FORWARD, (8, 5)),
+    "forearm": Loft("left_elbow", "left_wrist", FORWARD, (8, 5)),
     "hand": Loft("left_wrist", "left_fingertip", FORWARD, (8, 5)),
-    "thumb": Loft("left_thumb", "left_thumb_tip", FORWARD, (6, 3)),
-    "thigh": Loft("left_hip", "left_knee", FORWARD, (10, 6)),
+    "thumb": Loft("left_thumb", "left_thumb_tip", FORWARD, (6, 2)),
+    "thigh": Loft("left_hip", "left_knee", FORWARD, (10, 5)),
     "shank": Loft("left_knee", "left_ankle", FORWARD, (10, 7)),
     "foot": Loft("left_heel_sole", "left_ball_sole", UP, (10, 5)),
-    "toes": Loft("left_ball_sole", "left_toe_sole", UP, (10, 4)),
+    "toes": Loft("left_ball_sole", "left_toe_sole", UP, (8, 4)),
 }
 """Name of the profile -> its piece; pieces that start on the left exist on both sides."""
 
