@@ -51,8 +51,8 @@ test-addon: env
 bench: .venv/.installed ## Speed of the energy, beside frozen baselines where they are at hand
 	@.venv/bin/python tests/benchmarks/energy.py
 
-blender: ## A real Blender 5.2 in .blender (needs root and a Debian-like machine)
-	@.ci/blender .blender
+blender: ## A real Blender 5.2 beside the checkout (needs root and a Debian-like machine)
+	@.ci/blender
 
 clean: ## Forget results and caches; the environments stay
 	rm -rf out build dist .pytest_cache .ruff_cache

@@ -1,4 +1,4 @@
-"""The command line: ``silhouette-mocap``, ``python -m silhouette_mocap`` and Blender's ``-c``."""
+"""The command line: ``silhouette-mocap`` and ``python -m silhouette_mocap``."""
 
 import sys
 from collections.abc import Sequence
@@ -8,14 +8,19 @@ from importlib.util import find_spec
 def main(argv: Sequence[str] | None = None) -> int:
     """Runs one command and returns its exit code.
 
-    Where Blender can be imported, its exporter is handed to the command; the rest needs no Blender.
+    Where Blender can be imported, its exporter is handed to the command; it is loaded only when
+    something is exported.
     """
     from .core.cli import main as run
 
-    export = None
-    if find_spec("bpy") is not None:
-        from .addon.export import export_motion as export
-    return run(sys.argv[1:] if argv is None else argv, export)
+    exporter = None if find_spec("bpy") is None else _export_with_blender
+    return run(sys.argv[1:] if argv is None else argv, exporter)
+
+
+def _export_with_blender(request):
+    from .addon.export import export_take
+
+    return export_take(request)
 
 
 if __name__ == "__main__":

@@ -3,11 +3,13 @@
 import difflib
 import math
 from collections.abc import Collection
+from dataclasses import fields, is_dataclass
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any, NoReturn, TypeVar
 
 from ..errors import MocapError
 
+Settings = TypeVar("Settings")
 _TYPES = {bool: "true or false", int: "a whole number", float: "a number", str: "a text"}
 
 
@@ -118,6 +120,29 @@ class Table:
                     "choose from " + ", ".join(known),
                 )
         return tuple(dict.fromkeys(value))
+
+    def settings(self, kind: type[Settings]) -> Settings:
+        """A frozen dataclass of numbers, flags and such dataclasses, filled by this table.
+
+        Its own checks, which raise ValueError, are reported as faults of this table.
+        """
+        defaults = {field.name: field.default for field in fields(kind)}  # type: ignore[arg-type]
+        self.allow(*defaults)
+        values = {}
+        for name in self.values:
+            default = defaults[name]
+            if is_dataclass(default):
+                values[name] = self.table(name).settings(type(default))
+                continue
+            value = self.values[name]
+            right = type(value) is bool if type(default) is bool else _is_number(value)
+            if not right:
+                self._wrong(name, _TYPES[type(default)])
+            values[name] = value
+        try:
+            return kind(**values)
+        except ValueError as error:
+            self.fault(f"[{self.path}]: {error}")
 
 
 def _is_number(value: Any) -> bool:

@@ -1,0 +1,35 @@
+"""``export``: the result of a fit in further formats."""
+
+import argparse
+from pathlib import Path
+
+from ..motion.export_request import FORMATS, Exporter
+from ..pipeline import check_formats, export
+from .arguments import add_take, format_list, taken
+from .console import say
+
+NAME = "export"
+SUMMARY = "write the result of a fit in further formats"
+EXAMPLE = "silhouette-mocap export sample_scenes/walk/take.toml --out out/walk --export fbx,trc"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The words of the command."""
+    add_take(parser)
+    parser.add_argument(
+        "--out", type=Path, required=True, metavar="DIR", help="folder of the fit's result"
+    )
+    parser.add_argument(
+        "--export", type=format_list, metavar="LIST",
+        help=f"some of {','.join(FORMATS)} (default: what the take says)",
+    )  # fmt: skip
+
+
+def run(arguments: argparse.Namespace, exporter: Exporter | None) -> int:
+    """Writes the files."""
+    take = taken(arguments)
+    formats = take.exports if arguments.export is None else arguments.export
+    check_formats(formats, exporter)
+    for path in export(take, arguments.out, formats, exporter):
+        say(f"wrote {path}")
+    return 0

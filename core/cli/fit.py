@@ -1,0 +1,86 @@
+"""``fit``: from a take to a motion and its files."""
+
+import argparse
+from pathlib import Path
+
+from ..motion.export_request import FORMATS, Exporter
+from ..pipeline import EVALUATORS, FitRequest, FitResult, check_formats, export, fit
+from ..take.take import TRACKERS
+from .arguments import (
+    add_cameras_and_frames,
+    add_progress,
+    add_take,
+    format_list,
+    shown_progress,
+    taken,
+)
+from .console import complain, say
+from .interrupts import shielded
+
+NAME = "fit"
+SUMMARY = "track the performer of a take and write the motion"
+EXAMPLE = "silhouette-mocap fit sample_scenes/walk/take.toml --out out/walk --export blend,bvh"
+_DONE, _LOST = 0, 3
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The words of the command."""
+    add_take(parser)
+    parser.add_argument(
+        "--out", type=Path, required=True, metavar="DIR", help="folder for the result"
+    )
+    parser.add_argument(
+        "--tracker", choices=TRACKERS, help="how to search (default: what the take says)"
+    )
+    parser.add_argument(
+        "--evaluator", choices=tuple(EVALUATORS), default="native",
+        help="what renders and compares silhouettes (default: native)",
+    )  # fmt: skip
+    add_cameras_and_frames(parser)
+    parser.add_argument(
+        "--export", type=format_list, metavar="LIST",
+        help=f"some of {','.join(FORMATS)}, or none (default: what the take says)",
+    )  # fmt: skip
+    parser.add_argument("--strict", action="store_true", help="exit with 3 when frames were lost")
+    add_progress(parser)
+
+
+def run(arguments: argparse.Namespace, exporter: Exporter | None) -> int:
+    """Fits, exports and sums up."""
+    take = taken(arguments)
+    formats = take.exports if arguments.export is None else arguments.export
+    check_formats(formats, exporter)
+    request = FitRequest(
+        out=arguments.out,
+        tracker=arguments.tracker or take.tracker,
+        evaluator=arguments.evaluator,
+        frames=arguments.frames,
+        without=tuple(arguments.without),
+        shield=shielded,
+    )
+    result = fit(take, request, shown_progress(arguments))
+    files = result.files + export(take, arguments.out, formats, exporter)
+    _sum_up(result, files)
+    return _LOST if arguments.strict and result.report["lost_frames"] else _DONE
+
+
+def _sum_up(result: FitResult, files: tuple[Path, ...]) -> None:
+    report = result.report
+    frames = len(report["frames"])
+    seconds, evaluations = (
+        sum(report[f"{name}_per_frame"]) / frames for name in ("seconds", "evaluations")
+    )
+    say(
+        f"{frames} frames, IoU {report['iou']:.3f}, contour {report['contour_px']:.2f} px, "
+        f"{seconds:.2f} s and {evaluations:.0f} evaluations per frame"
+    )
+    error = report["error_mm"]
+    if error:
+        say(
+            f"error to the truth: {error['absolute']['mean']:.1f} mm, "
+            f"{error['offset_removed']['mean']:.1f} mm after removing constant offsets"
+        )
+    for path in files:
+        say(f"wrote {path}")
+    if report["lost_frames"]:
+        complain(f"frames lost: {', '.join(map(str, report['lost_frames']))}")

@@ -1,0 +1,109 @@
+"""Pictures that show how a motion fits the footage: observed and rendered silhouettes over it.
+
+Green is where both are, red where only the model is, blue where only the performer was observed.
+"""
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import cv2
+import numpy as np
+
+from ..errors import MocapError
+from ..silhouettes.silhouette import Silhouette
+
+BOTH, MODEL_ONLY, OBSERVED_ONLY = (60, 200, 60), (40, 40, 240), (255, 120, 30)
+"""Colours, BGR."""
+_OPACITY = 0.6
+_TILE_WIDTH = 480
+_LABEL = {"fontFace": cv2.FONT_HERSHEY_SIMPLEX, "fontScale": 0.5, "color": (255, 255, 255)}
+
+
+@dataclass(frozen=True, eq=False)
+class Tile:
+    """One view of one frame.
+
+    Attributes:
+        label: written into its corner.
+        footage: (H, W, 3) uint8 BGR.
+        silhouette: what was observed.
+        rendered: (H, W) bool, where the model is.
+    """
+
+    label: str
+    footage: np.ndarray
+    silhouette: Silhouette
+    rendered: np.ndarray
+
+
+def overlay_picture(tiles: Sequence[Tile], title: str) -> np.ndarray:
+    """(H, W, 3) uint8 BGR picture of all views side by side, even in both sizes, ``title`` on top."""
+    columns = math.ceil(math.sqrt(len(tiles)))
+    pictures = [_scaled_and_labelled(tile) for tile in tiles]
+    height = max(picture.shape[0] for picture in pictures)
+    padded = [_padded(picture, height) for picture in pictures]
+    padded += [np.zeros_like(padded[0])] * (-len(padded) % columns)
+    rows = [np.hstack(padded[i : i + columns]) for i in range(0, len(padded), columns)]
+    strip = np.zeros((24, columns * _TILE_WIDTH, 3), np.uint8)
+    cv2.putText(strip, title, (8, 17), **_LABEL, lineType=cv2.LINE_AA)
+    return _padded(np.vstack([strip, *rows]))
+
+
+def write_overlay(path: Path, fps: float, pictures: Iterable[np.ndarray]) -> None:
+    """Writes pictures (H, W, 3) uint8 BGR of one size as a video, whole or not at all.
+
+    Raises:
+        MocapError: the video cannot be written.
+    """
+    partial = path.with_name(f".{path.stem}.partial{path.suffix}")
+    video = None
+    try:
+        for picture in pictures:
+            if video is None:
+                size = (picture.shape[1], picture.shape[0])
+                code = cv2.VideoWriter.fourcc(*"mp4v")
+                video = cv2.VideoWriter(str(partial), code, fps, size)
+                if not video.isOpened():
+                    raise MocapError("cannot be written", "check the folder", file=path)
+            video.write(picture)
+        if video is not None:
+            video.release()
+            partial.replace(path)
+    finally:
+        if video is not None:
+            video.release()
+        partial.unlink(missing_ok=True)
+
+
+def coloured(tile: Tile) -> np.ndarray:
+    """(H, W, 3) uint8 BGR footage, grey, with the two silhouettes over it; unobserved px darker."""
+    grey = cv2.cvtColor(tile.footage, cv2.COLOR_BGR2GRAY)
+    picture = cv2.cvtColor(grey, cv2.COLOR_GRAY2BGR)
+    picture[~tile.silhouette.observed] //= 3
+    seen, drawn = tile.silhouette.foreground, tile.rendered
+    for where, colour in (
+        (seen & drawn, BOTH),
+        (drawn & ~seen, MODEL_ONLY),
+        (seen & ~drawn, OBSERVED_ONLY),
+    ):
+        picture[where] = (1 - _OPACITY) * picture[where] + _OPACITY * np.array(colour)
+    return picture
+
+
+def _scaled_and_labelled(tile: Tile) -> np.ndarray:
+    picture = coloured(tile)
+    height = round(picture.shape[0] * _TILE_WIDTH / picture.shape[1])
+    shrinks = picture.shape[1] > _TILE_WIDTH
+    method = cv2.INTER_AREA if shrinks else cv2.INTER_NEAREST
+    picture = cv2.resize(picture, (_TILE_WIDTH, height), interpolation=method)
+    cv2.putText(picture, tile.label, (8, 18), **_LABEL, lineType=cv2.LINE_AA)
+    return picture
+
+
+def _padded(picture: np.ndarray, height: int | None = None) -> np.ndarray:
+    """``picture`` with black below up to ``height``, or to even sizes."""
+    rows = picture.shape[0] % 2 if height is None else height - picture.shape[0]
+    columns = picture.shape[1] % 2 if height is None else 0
+    return np.pad(picture, ((0, rows), (0, columns), (0, 0)))

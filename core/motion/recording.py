@@ -1,0 +1,45 @@
+"""Tracked frames put together as a motion."""
+
+from collections.abc import Sequence
+from fractions import Fraction
+
+import numpy as np
+
+from ..body.body import POINT_NAMES, Body
+from ..body.kinematics import joint_positions, points
+from ..fitting.tracking import FrameFit
+from .motion import Motion
+
+
+def recorded(
+    fits: Sequence[FrameFit], body: Body, camera_names: Sequence[str], fps: Fraction
+) -> Motion:
+    """The motion of ``fits`` in the order of their frames; every view fully trusted.
+
+    Raises:
+        ValueError: no fit.
+    """
+    if not fits:
+        raise ValueError("expected at least one tracked frame")
+    fits = sorted(fits, key=lambda fit: fit.frame)
+    poses = np.stack([fit.pose for fit in fits])
+    scores = [fit.scores for fit in fits]
+    return Motion(
+        fps=(fps.numerator, fps.denominator),
+        frames=np.array([fit.frame for fit in fits]),
+        pose=poses,
+        pose_raw=poses.copy(),
+        dof_names=body.dofs.names,
+        joints=joint_positions(body, poses),
+        joint_names=body.joint_names,
+        points=points(body, poses),
+        point_names=POINT_NAMES,
+        xor_px=np.stack([s.xor_px for s in scores]),
+        iou=np.stack([s.iou for s in scores]),
+        view_weights=np.ones((len(fits), len(camera_names))),
+        limb_residual=np.stack([s.limb_residual for s in scores]),
+        camera_names=tuple(camera_names),
+        confidence=np.stack([s.confidence for s in scores]),
+        lost=np.array([s.lost for s in scores]),
+        locked=np.zeros(len(fits), bool),
+    )

@@ -1,0 +1,80 @@
+"""report.json: what was done with which settings, how well it fits and how long it took."""
+
+import json
+import math
+import platform
+from collections.abc import Sequence
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+import cv2
+import numpy as np
+import scipy
+
+from ..fitting.tracking import FrameFit
+from .motion import Motion
+
+
+def fit_quality(motion: Motion, fits: Sequence[FrameFit]) -> dict:
+    """IoU, contour distance, lost frames, and seconds and evaluations per frame."""
+    ordered = sorted(fits, key=lambda fit: fit.frame)
+    return {
+        "frames": motion.frames.tolist(),
+        "iou": _mean(motion.iou),
+        "iou_per_camera": dict(zip(motion.camera_names, _columns(motion.iou), strict=True)),
+        "iou_per_frame": [_mean(row) for row in motion.iou],
+        "contour_px": _median([fit.scores.contour_px for fit in ordered]),
+        "lost_frames": motion.frames[motion.lost].tolist(),
+        "seconds_per_frame": [fit.seconds for fit in ordered],
+        "evaluations_per_frame": [fit.evaluations for fit in ordered],
+        "windows_left_per_frame": [fit.windows_left for fit in ordered],
+    }
+
+
+def versions() -> dict[str, str]:
+    """What the result depends on: this product, Python, libraries, machine."""
+    try:
+        own = version("silhouette-mocap")
+    except PackageNotFoundError:
+        own = "not installed"
+    return {
+        "silhouette_mocap": own,
+        "python": platform.python_version(),
+        "numpy": np.__version__,
+        "scipy": scipy.__version__,
+        "opencv": cv2.__version__,
+        "machine": f"{platform.system()} {platform.machine()}",
+    }
+
+
+def write_report(path: Path, report: dict) -> None:
+    """Writes ``report`` as JSON, whole or not at all; what is not finite becomes null."""
+    partial = path.with_name(path.name + ".partial")
+    partial.write_text(json.dumps(_plain(report), indent=1, allow_nan=False) + "\n", "utf-8")
+    partial.replace(path)
+
+
+def _plain(value):
+    if isinstance(value, dict):
+        return {str(key): _plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(item) for item in value]
+    if isinstance(value, np.generic):
+        value = value.item()
+    if isinstance(value, float):
+        return round(value, 6) if math.isfinite(value) else None
+    return value
+
+
+def _mean(values: np.ndarray) -> float:
+    finite = values[np.isfinite(values)]
+    return float(finite.mean()) if len(finite) else math.nan
+
+
+def _median(values: Sequence[float]) -> float:
+    finite = [value for value in values if math.isfinite(value)]
+    return float(np.median(finite)) if finite else math.nan
+
+
+def _columns(values: np.ndarray) -> list[float]:
+    return [_mean(column) for column in values.T]

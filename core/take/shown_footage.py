@@ -1,0 +1,53 @@
+"""Footage to show behind the performer, as the pinhole cameras of the take see it."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import cv2
+import numpy as np
+
+from ..errors import MocapError
+from ..footage.pictures import colour_picture
+from .views import View
+
+
+def shown_footage(views: Sequence[View], last: int, fps: float, folder: Path) -> dict[str, str]:
+    """Camera name -> its footage; that of distorting lenses is written undistorted.
+
+    Args:
+        views: the cameras.
+        last: the last frame that will be shown.
+        fps: frames per second.
+        folder: undistorted videos go into its ``footage``.
+
+    Returns:
+        Path patterns of pictures, or videos whose first picture is frame 0.
+    """
+    found = {}
+    for view in views:
+        name = view.undistortion.camera.name
+        if view.undistortion.is_identity:
+            found[name] = view.place
+        else:
+            path = folder / "footage" / f"{name}.mp4"
+            _write_undistorted(view, last, fps, path)
+            found[name] = str(path)
+    return found
+
+
+def _write_undistorted(view: View, last: int, fps: float, path: Path) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    footage, camera = view.source.footage, view.undistortion.camera
+    partial = path.with_name(f".{path.name}.partial.mp4")
+    video = cv2.VideoWriter(str(partial), cv2.VideoWriter.fourcc(*"mp4v"), fps, camera.size)
+    if not video.isOpened():
+        raise MocapError("cannot be written", "check the folder", file=path, camera=camera.name)
+    empty = np.zeros((*camera.size[::-1], 3), np.uint8)
+    try:
+        for frame in range(last + 1):
+            missing = frame < footage.frames[0]
+            picture = empty if missing else colour_picture(footage.picture(frame))
+            video.write(empty if missing else view.undistortion.undistorted(picture))
+    finally:
+        video.release()
+    partial.replace(path)

@@ -1,0 +1,241 @@
+"""What the cameras of a take see: calibration and footage brought together, camera by camera."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from ..cameras.adjustment import adjusted, matched_to_footage, observed_pixels
+from ..cameras.arrangement import opposite_pairs
+from ..cameras.calibration import CalibrationSettings, read_calibration, read_camera_names
+from ..cameras.camera import Camera
+from ..cameras.undistortion import Undistortion
+from ..errors import MocapError
+from ..footage.footage import Footage, open_footage
+from ..footage.patterns import for_camera
+from ..footage.pictures import colour_picture, read_picture
+from ..silhouettes.cleaning import Cleaning
+from ..silhouettes.difference import Difference, DifferenceSettings
+from ..silhouettes.masks import ReadyMasks, mask_from_picture
+from ..silhouettes.plate import Plate, read_plate
+from ..silhouettes.silhouette import Silhouette
+from ..silhouettes.source import Extractor, SilhouetteSource
+from ..silhouettes.statistics import Statistics, StatisticsSettings
+from .reduction import Reduction, fitting_reduction
+from .table import Table
+from .take import Take
+
+_FEWEST_CAMERAS = 2
+
+
+@dataclass(frozen=True, eq=False)
+class View:
+    """One camera of a take.
+
+    Attributes:
+        place: path of the footage: a video or folder, or a pattern with ``{frame}``.
+        source: its silhouettes, at the footage's resolution, without lens distortion.
+        undistortion: from the footage's camera to a pinhole camera.
+        reduction: from that pinhole camera to the one that is tracked with.
+    """
+
+    place: str
+    source: SilhouetteSource
+    undistortion: Undistortion
+    reduction: Reduction
+
+    @property
+    def camera(self) -> Camera:
+        """The pinhole camera that is tracked with."""
+        return self.reduction.camera(self.undistortion.camera)
+
+    def silhouette(self, frame: int) -> Silhouette:
+        """What ``camera`` sees in ``frame``."""
+        return self.reduction.silhouette(self.source.read(frame))
+
+    def picture(self, frame: int) -> np.ndarray:
+        """(H, W, 3) uint8 BGR footage as ``camera`` sees it."""
+        picture = colour_picture(self.source.footage.picture(frame))
+        return self.reduction.picture(self.undistortion.undistorted(picture))
+
+
+@dataclass(frozen=True, eq=False)
+class Views:
+    """All cameras of a take that are used.
+
+    Attributes:
+        views: in the order of the cameras' names.
+        frames: first and last frame, inclusive.
+        notes: sentences about calibration and footage that the user should see.
+    """
+
+    views: tuple[View, ...]
+    frames: tuple[int, int]
+    notes: tuple[str, ...]
+
+    @property
+    def cameras(self) -> tuple[Camera, ...]:
+        """The pinhole cameras that are tracked with."""
+        return tuple(view.camera for view in self.views)
+
+    def silhouettes(self, frame: int) -> tuple[Silhouette, ...]:
+        """What the cameras see in ``frame``."""
+        return tuple(view.silhouette(frame) for view in self.views)
+
+    def reduced(self, frames: Sequence[int]) -> "Views":
+        """The views at the resolution that fits the performer's size in ``frames``."""
+        views = [
+            replace(view, reduction=fitting_reduction(tuple(view.source.read(f) for f in frames)))
+            for view in self.views
+        ]
+        return replace(self, views=tuple(views))
+
+
+def open_views(
+    take: Take, without: Sequence[str] = (), frames: tuple[int | None, int | None] = (None, None)
+) -> Views:
+    """The views of ``take``, ready to be read at full resolution.
+
+    Args:
+        take: the take.
+        without: names of cameras to leave out.
+        frames: first and last frame, inclusive, that narrow the take's; None leaves an end.
+
+    Raises:
+        MocapError: calibration or footage that is missing or does not fit, an unknown camera, or
+            fewer than two cameras.
+    """
+    settings = CalibrationSettings(take.cameras.format, take.cameras.units, take.cameras.up)
+    names = read_camera_names(take.cameras.calibration, settings)
+    used = _used_names(take, names, without)
+    pattern = footage_pattern(take)
+    footage = {name: open_footage(pattern, name, take.frames) for name in used}
+    settings = replace(settings, sizes={name: f.size for name, f in footage.items()})
+    calibration = read_calibration(take.cameras.calibration, settings)
+    cameras = [camera for camera in calibration.cameras if camera.name in used]
+    views = tuple(_view(take, camera, footage[camera.name]) for camera in cameras)
+    notes = [*calibration.notes, *_opposite_notes(cameras), *_rate_notes(take, footage)]
+    return Views(views, _narrowed(take, footage, frames), tuple(notes))
+
+
+def footage_pattern(take: Take) -> str:
+    """Where the pictures of all cameras are."""
+    return take.footage.silhouettes or take.footage.video or ""
+
+
+def _used_names(take: Take, names: Sequence[str], without: Sequence[str]) -> tuple[str, ...]:
+    known = ", ".join(names)
+    for name in (*without, *take.cameras.adjust):
+        if name not in names:
+            raise MocapError(
+                f'there is no camera "{name}"', f"the cameras are {known}", file=take.path
+            )
+    for name in names:
+        if name in (".", "..") or "/" in name or "\\" in name:
+            raise MocapError(
+                f'a camera called "{name}" cannot name files', "rename it",
+                file=take.cameras.calibration,
+            )  # fmt: skip
+    used = tuple(name for name in names if name not in without)
+    if len(used) < _FEWEST_CAMERAS:
+        raise MocapError(
+            f"{len(used)} camera left", f"use at least {_FEWEST_CAMERAS}", file=take.path
+        )
+    return used
+
+
+def _view(take: Take, calibrated: Camera, footage: Footage) -> View:
+    name, size = calibrated.name, footage.size
+    ignored = np.zeros(size[::-1], bool)
+    adjustment = take.cameras.adjust.get(name)
+    if adjustment is None:
+        camera = matched_to_footage(calibrated, size)
+    else:
+        change = (adjustment.scale, adjustment.shift)
+        camera = adjusted(calibrated, *change, size)
+        ignored |= ~observed_pixels(calibrated.size, *change, size)
+    if take.footage.ignore is not None:
+        ignored |= _ignore_mask(take.footage.ignore, name, size)
+    undistortion = Undistortion(camera)
+    source = SilhouetteSource(
+        footage=footage,
+        extractor=_extractor(take, footage),
+        cleaning=Cleaning(),
+        ignore=ignored if ignored.any() else None,
+        rectifier=None if undistortion.is_identity else undistortion,
+    )
+    return View(for_camera(footage_pattern(take), name), source, undistortion, Reduction())
+
+
+def _ignore_mask(pattern: str, camera: str, size: tuple[int, int]) -> np.ndarray:
+    path = Path(for_camera(pattern, camera))
+    mask = mask_from_picture(read_picture(path, camera))
+    if mask.shape != size[::-1]:
+        raise MocapError(
+            f"is {mask.shape[1]} x {mask.shape[0]} px, the footage {size[0]} x {size[1]} px",
+            "paint it over a frame of the footage", file=path, camera=camera,
+        )  # fmt: skip
+    return mask
+
+
+def _extractor(take: Take, footage: Footage) -> Extractor:
+    files = take.footage
+    if files.video is None:
+        return ReadyMasks(footage.lossy)
+    if files.plate is None:
+        raise MocapError(
+            f'"footage.plate" is missing, which "{files.extraction}" needs',
+            "film the empty scene, or make one with the plate command", file=take.path,
+        )  # fmt: skip
+    plate = read_plate(files.plate, footage.camera)
+    if plate.size != footage.size:
+        raise MocapError(
+            f"the plate is {plate.size[0]} x {plate.size[1]} px, the footage "
+            f"{footage.size[0]} x {footage.size[1]} px",
+            "make it from the footage's own camera", file=for_camera(files.plate, footage.camera),
+            camera=footage.camera,
+        )  # fmt: skip
+    table = Table(files.extraction_settings, take.path, f"footage.{files.extraction}")
+    return EXTRACTORS[files.extraction](plate, table)
+
+
+EXTRACTORS: dict[str, Callable[[Plate, Table], Extractor]] = {
+    "statistics": lambda plate, table: Statistics(plate, table.settings(StatisticsSettings)),
+    "difference": lambda plate, table: Difference(plate, table.settings(DifferenceSettings)),
+}
+
+
+def _narrowed(
+    take: Take, footage: dict[str, Footage], wanted: tuple[int | None, int | None]
+) -> tuple[int, int]:
+    """First and last frame, inclusive."""
+    if take.frames is not None:
+        first, last = take.frames
+    else:
+        first = max(f.frames[0] for f in footage.values())
+        last = min(f.frames[-1] for f in footage.values())
+    begin = first if wanted[0] is None else wanted[0]
+    end = last if wanted[1] is None else wanted[1]
+    if not first <= begin <= end <= last:
+        raise MocapError(
+            f"frames {begin} to {end} lie outside the take's, {first} to {last}",
+            "give frames of the take", file=take.path,
+        )  # fmt: skip
+    return begin, end
+
+
+def _opposite_notes(cameras: Sequence[Camera]) -> list[str]:
+    return [
+        f"cameras {first} and {second} face each other and see nearly mirrored silhouettes"
+        for first, second in opposite_pairs(cameras)
+    ]
+
+
+def _rate_notes(take: Take, footage: dict[str, Footage]) -> list[str]:
+    rates = {name: f.fps for name, f in footage.items() if f.fps is not None}
+    return [
+        f"camera {name} says {rate:.2f} frames per second, the take {float(take.fps):.2f}"
+        for name, rate in rates.items()
+        if abs(rate - float(take.fps)) > 0.01 * float(take.fps)
+    ]
