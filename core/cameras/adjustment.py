@@ -57,13 +57,14 @@ def matched_to_footage(camera: Camera, size: tuple[int, int]) -> Camera:
     Raises:
         MocapError: another aspect (turned to portrait or landscape, or cropped).
     """
-    if tuple(size) == camera.size:
+    width, height = size
+    if (width, height) == camera.size:
         return camera
     if _same_aspect(camera.size, size):
-        return camera.scaled((size[0] / camera.size[0], size[1] / camera.size[1]), tuple(size))
-    footage, calibrated = (f"{width} x {height}" for width, height in (size, camera.size))
+        return camera.scaled((width / camera.size[0], height / camera.size[1]), size)
+    footage, calibrated = f"{width} x {height}", f"{camera.size[0]} x {camera.size[1]}"
     sizes = f"the footage has {footage} px, the calibration {calibrated} px"
-    if _same_aspect(camera.size, size[::-1]):
+    if _same_aspect(camera.size, (height, width)):
         raise MocapError(
             f"{sizes}: portrait and landscape are swapped",
             "turn the footage to how it was calibrated, or calibrate as it was filmed",
@@ -79,6 +80,6 @@ def matched_to_footage(camera: Camera, size: tuple[int, int]) -> Camera:
 
 
 def _same_aspect(calibrated: tuple[int, int], footage: tuple[int, int]) -> bool:
-    """Whether one factor, with rounding to whole pixels (below 1 px), maps one to the other."""
+    """Whether one is the other times a factor, the shorter side rounded by less than 1 px."""
     (w, h), (width, height) = calibrated, footage
-    return abs(w * height / h - width) < 1 or abs(h * width / w - height) < 1
+    return abs(w * height - h * width) < max(w, h)

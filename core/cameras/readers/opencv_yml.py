@@ -43,7 +43,9 @@ def read(path: Path) -> FileContent:
     lenses = _nodes(lens_file)
     positions = lenses if position_file == lens_file else _nodes(position_file)
     names = [key[2:] for key in lenses if key.startswith("K_")]
-    missing = [name for name in lenses.get("names", []) if name not in [*names, "none"]]
+    listed = lenses.get("names")
+    listed = listed if isinstance(listed, list) else []
+    missing = [name for name in listed if name not in [*names, "none"]]
     if missing:
         raise Place(lens_file, missing[0], f"K_{missing[0]}").fault(
             "is missing, though the camera is among the names", "add it or take the name out"

@@ -36,7 +36,8 @@ from .file_camera import (
 SUBPIXELS = 64.0
 OPENCV_FROM_QUALISYS_AXES = np.diag([1.0, -1.0, -1.0])
 ROTATION_KEYS = tuple(f"r{row}{column}" for row in (1, 2, 3) for column in (1, 2, 3))
-LENS_KEYS = tuple(
+MATRIX_KEYS = ("focalLengthU", "focalLengthV", "centerPointU", "centerPointV", "skew")
+DISTORTION_KEYS = tuple(
     f"{kind}Distortion{n}"
     for kind, n in [("radial", 1), ("radial", 2), ("tangental", 1), ("tangental", 2), ("radial", 3)]
 )
@@ -73,26 +74,20 @@ def _camera(path: Path, element: ElementTree.Element) -> FileCamera:
     name = element.get("serial")
     if not name:
         raise MocapError("a camera has no serial", "export it again from QTM", file=path)
-    left, top, right, bottom = _field_of_view(path, name, element)
+    left, top, right, bottom = map(float, _field_of_view(path, name, element))
     place = Place(path, name, "intrinsic")
-    fx, fy, cx, cy, skew = (
-        _attributes(
-            path, name, element, "intrinsic",
-            ("focalLengthU", "focalLengthV", "centerPointU", "centerPointV", "skew"),
-        )
-        / SUBPIXELS
-    )  # fmt: skip
+    fx, fy, cx, cy, skew = _attributes(path, name, element, "intrinsic", MATRIX_KEYS) / SUBPIXELS
     matrix = [[fx, skew, cx - left], [0, fy, cy - top], [0, 0, 1]]
     axes = _attributes(path, name, element, "transform", ROTATION_KEYS).reshape(3, 3)
     centre = _attributes(path, name, element, "transform", ("x", "y", "z"))
     rotation = OPENCV_FROM_QUALISYS_AXES @ rotation_matrix(axes, Place(path, name, "transform"))
-    lens = _attributes(path, name, element, "intrinsic", LENS_KEYS)
+    lens = _attributes(path, name, element, "intrinsic", DISTORTION_KEYS)
     return FileCamera(
         name=name,
         size=picture_size([right - left + 1, bottom - top + 1], Place(path, name, "fov_video")),
         matrix=intrinsic_matrix(matrix, place),
         rotation=rotation,
-        translation=-rotation @ centre,
+        translation=rotation @ -centre,
         distortion=distortion_coefficients(lens, False, place),
     )
 

@@ -1,9 +1,7 @@
-"""Calibration files of all formats, and what is said about bad ones."""
+"""Calibration files in TOML, units, up axes, and what is said about bad files."""
 
-from dataclasses import replace
 from pathlib import Path
 
-import cv2
 import numpy as np
 import pytest
 from silhouette_mocap.core.cameras.calibration import (
@@ -12,11 +10,9 @@ from silhouette_mocap.core.cameras.calibration import (
     read_calibration,
     read_camera_names,
 )
-from silhouette_mocap.core.cameras.undistortion import Undistortion
 from silhouette_mocap.core.errors import MocapError
 
 MATRIX = "[[800.0, 0.0, 319.5], [0.0, 810.0, 239.5], [0.0, 0.0, 1.0]]"
-POINTS = np.array([[0.2, 0.3, 1.0], [-0.4, 0.1, 1.6]])
 
 
 def table(header: str, **changes) -> str:
@@ -43,16 +39,6 @@ def written(folder: Path, text: str, name: str = "calibration.toml") -> Path:
 def two_tables(**changes) -> str:
     """Two cameras, 2 m apart; the second one as changed."""
     return table("cam_1") + table("cam_2", **({"translation": "[-2.0, 1.0, 4.0]"} | changes))
-
-
-def fault(path: Path, settings: CalibrationSettings | None = None) -> str:
-    with pytest.raises(MocapError) as caught:
-        read_calibration(path, settings)
-    line = str(caught.value)
-    assert path.stem.removesuffix("tri") in line or path.is_dir()
-    assert "; " in line, "a remedy follows"
-    assert "\n" not in line
-    return line
 
 
 def test_toml_is_read_with_its_lens(tmp_path):
@@ -189,236 +175,40 @@ def test_pictures_upright_along_another_axis_are_hinted_at(tmp_path):
         ({"name": '"cam_1"'}, ["2 cameras are called 'cam_1'"]),
     ],
 )
-def test_every_bad_value_is_named_with_file_camera_and_remedy(tmp_path, changes, parts):
+def test_every_bad_value_is_named_with_file_camera_and_remedy(tmp_path, changes, parts, fault):
     line = fault(written(tmp_path, two_tables(**changes)))
     for part in parts:
         assert part in line
 
 
-def test_a_truncated_file_names_the_line(tmp_path):
+def test_a_truncated_file_names_the_line(tmp_path, fault):
     text = two_tables()
     line = fault(written(tmp_path, text[: text.rindex("translation") + 16]))
     assert "not valid TOML" in line
     assert "line" in line or "end of document" in line
 
 
-def test_a_missing_file_says_so(tmp_path):
+def test_a_missing_file_says_so(tmp_path, fault):
     assert "No such file" in fault(tmp_path / "nowhere.toml")
 
 
-def test_an_empty_file_says_so(tmp_path):
+def test_an_empty_file_says_so(tmp_path, fault):
     assert "empty" in fault(written(tmp_path, " \n"))
 
 
 @pytest.mark.parametrize("content", ["version = 1\n[cameras]\n", '{"cameras": []}', "\x80\x04."])
-def test_an_unknown_format_lists_the_known_ones(tmp_path, content):
+def test_an_unknown_format_lists_the_known_ones(tmp_path, content, fault):
     line = fault(written(tmp_path, content))
     for key in ("toml", "qca", "opencv"):
         assert f"({key})" in line
 
 
-def test_a_file_without_cameras_says_so(tmp_path):
-    assert "no camera" in fault(written(tmp_path, "[metadata]\nmatrix_error = 1\n"), TOML)
-
-
-TOML = CalibrationSettings(format="toml")
+def test_a_file_without_cameras_says_so(tmp_path, fault):
+    path = written(tmp_path, "[metadata]\nmatrix_error = 1\n")
+    assert "no camera" in fault(path, CalibrationSettings(format="toml"))
 
 
 @pytest.mark.parametrize("choice", [{"format": "yaml"}, {"units": "feet"}, {"up": "w"}])
 def test_unknown_choices_name_the_known_ones(choice):
     with pytest.raises(MocapError, match=r"unknown .* use "):
         CalibrationSettings(**choice)
-
-
-# --- Qualisys -----------------------------------------------------------------------------------
-
-# the camera of table(): position (0, -4, 1) m; its axes right +X, up +Z, backwards -Y are the rows
-QCA_CAMERA = """<camera active="{active}" serial="{serial}">
-  <fov_video left="100" top="20" right="739" bottom="499"/>
-  <transform x="{x}" y="-4000" z="1000" r11="1" r12="0" r13="0" r21="0" r22="0" r23="1"
-    r31="0" r32="-1" r33="0"/>
-  <intrinsic focalLengthU="51200" focalLengthV="51840" centerPointU="26848" centerPointV="16608"
-    skew="0" radialDistortion1="-0.1" radialDistortion2="0.02" radialDistortion3="0"
-    tangentalDistortion1="0.001" tangentalDistortion2="-0.002"/>
-</camera>"""
-
-
-def qca(*cameras: dict) -> str:
-    start = {"active": 1, "serial": "cam_1", "x": 0}
-    body = "\n".join(QCA_CAMERA.format(**start | camera) for camera in cameras)
-    return f'<?xml version="1.0"?>\n<calibration>\n<cameras>\n{body}\n</cameras></calibration>'
-
-
-def test_qualisys_agrees_with_the_same_camera_in_toml(tmp_path):
-    toml = read_calibration(written(tmp_path, two_tables())).cameras
-    text = qca({}, {"serial": "cam_2", "x": 2000})
-    calibration = read_calibration(written(tmp_path, text, "calibration.qca.txt"))
-    assert (calibration.units, calibration.units_guessed) == ("mm", False)
-    for ours, theirs in zip(calibration.cameras, toml, strict=True):
-        assert (ours.name, ours.size) == (theirs.name, theirs.size)
-        np.testing.assert_allclose(ours.centre, theirs.centre, atol=1e-9)
-        np.testing.assert_allclose(ours.matrix, theirs.matrix)
-        np.testing.assert_allclose(ours.project(POINTS), theirs.project(POINTS), atol=1e-6)
-
-
-def test_inactive_qualisys_cameras_are_left_out(tmp_path):
-    path = written(tmp_path, qca({}, {"serial": "off", "active": 0}), "calibration.txt")
-    calibration = read_calibration(path)
-    assert [camera.name for camera in calibration.cameras] == ["cam_1"]
-    assert "camera off is left out" in calibration.notes[0]
-
-
-@pytest.mark.parametrize(
-    ("old", "new", "parts"),
-    [
-        ("</cameras></calibration>", "", ["not complete XML", "line"]),
-        ('r12="0" ', "", ["cam_1", "transform r12 is missing"]),
-        ('r32="-1"', 'r32="1"', ["cam_1", "transform", "mirrored"]),
-        ('focalLengthU="51200"', 'focalLengthU="inf"', ["cam_1", "intrinsic", "not finite"]),
-        ('focalLengthU="51200"', 'focalLengthU="wide"', ["cam_1", "intrinsic", "numbers"]),
-        ("fov_video", "fov_other", ["cam_1", "<fov_marker> is missing"]),
-        ('serial="cam_1"', "", ["no serial"]),
-    ],
-)
-def test_bad_qualisys_files_are_named(tmp_path, old, new, parts):
-    line = fault(written(tmp_path, qca({}).replace(old, new), "calibration.txt"))
-    for part in parts:
-        assert part in line
-
-
-# --- OpenCV / EasyMocap -------------------------------------------------------------------------
-
-
-def write_pair(folder: Path, names=("none", "cam_10", "none", "cam_2"), lens="dist", rot="Rot"):
-    """The camera of table(), once at x = 0 and once at x = 2 m, as OpenCV writes it."""
-    rotation = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])
-    intri = cv2.FileStorage(str(folder / "intri.yml"), cv2.FileStorage_WRITE)
-    extri = cv2.FileStorage(str(folder / "extri.yml"), cv2.FileStorage_WRITE)
-    for storage in (intri, extri):
-        storage.startWriteStruct("names", cv2.FileNode_SEQ)
-        for name in names:
-            storage.write("", name)
-        storage.endWriteStruct()
-    for name, x in [("cam_10", 0.0), ("cam_2", 2.0)]:
-        matrix = np.array([[800, 0, 319.5], [0, 810, 239.5], [0, 0, 1]])
-        intri.write(f"K_{name}", matrix)
-        intri.write(f"{lens}_{name}", np.array([[-0.1, 0.02, 0.001, -0.002, 0.0]]))
-        turn = rotation if rot == "Rot" else cv2.Rodrigues(rotation)[0]
-        extri.write(f"{rot}_{name}", turn)
-        extri.write(f"T_{name}", np.array([[-x], [1.0], [4.0]]))
-    intri.release()
-    extri.release()
-
-
-SIZES = CalibrationSettings(sizes={"cam_2": (640, 480), "cam_10": (480, 640)})
-
-
-@pytest.mark.parametrize("given", ["intri.yml", "extri.yml", "."])
-@pytest.mark.parametrize(("lens", "rot"), [("dist", "Rot"), ("D", "R")])
-def test_an_easymocap_pair_is_read_from_either_file_or_the_folder(tmp_path, given, lens, rot):
-    write_pair(tmp_path, lens=lens, rot=rot)
-    calibration = read_calibration(tmp_path / given, SIZES)
-    assert [camera.name for camera in calibration.cameras] == ["cam_2", "cam_10"]
-    assert [camera.size for camera in calibration.cameras] == [(640, 480), (480, 640)]
-    folder = tmp_path / "toml"
-    folder.mkdir()
-    twin = read_calibration(written(folder, two_tables())).cameras[1]
-    np.testing.assert_allclose(calibration.cameras[0].centre, [2, -4, 1], atol=1e-9)
-    np.testing.assert_allclose(
-        calibration.cameras[0].project(POINTS), twin.project(POINTS), atol=1e-6
-    )
-
-
-def test_names_are_known_before_sizes(tmp_path):
-    write_pair(tmp_path, names=())
-    assert read_camera_names(tmp_path) == ("cam_2", "cam_10")
-
-
-def test_an_unknown_size_names_the_camera_and_the_remedy(tmp_path):
-    write_pair(tmp_path)
-    line = fault(tmp_path / "intri.yml")
-    assert "cam_2" in line
-    assert "give the footage's size" in line
-
-
-def test_sizes_in_the_pair_itself_are_taken(tmp_path):
-    write_pair(tmp_path)
-    with (tmp_path / "intri.yml").open("a") as file:
-        file.write("W_cam_2: 640\nH_cam_2: 480\nW_cam_10: 640\nH_cam_10: 480\n")
-    assert read_calibration(tmp_path).cameras[0].size == (640, 480)
-
-
-def test_a_pair_without_its_other_half_says_so(tmp_path):
-    write_pair(tmp_path)
-    (tmp_path / "extri.yml").unlink()
-    assert "extri.yml is not beside it" in fault(tmp_path / "intri.yml", SIZES)
-
-
-def test_a_folder_without_a_pair_says_so(tmp_path):
-    assert "no intri.yml" in fault(tmp_path)
-
-
-@pytest.mark.parametrize(
-    ("file", "old", "new", "parts"),
-    [
-        ("intri.yml", "dist_cam_2", "other_cam_2", ["cam_2", "dist_cam_2 or D_cam_2 is missing"]),
-        ("extri.yml", "T_cam_2", "other_cam_2", ["extri.yml", "cam_2", "T_cam_2 is missing"]),
-        ("intri.yml", "K_cam_2", "L_cam_2", ["cam_2", "K_cam_2 is missing"]),
-        ("extri.yml", "-2.", "-.Nan", ["extri.yml", "cam_2", "T_cam_2", "not finite"]),
-    ],
-)
-def test_bad_values_of_a_pair_are_named(tmp_path, file, old, new, parts):
-    write_pair(tmp_path)
-    path = tmp_path / file
-    text = path.read_text()
-    assert old in text
-    path.write_text(text.replace(old, new))
-    line = fault(tmp_path / "intri.yml", SIZES)
-    for part in parts:
-        assert part in line
-
-
-def test_a_truncated_pair_says_so(tmp_path):
-    write_pair(tmp_path)
-    path = tmp_path / "extri.yml"
-    path.write_text(path.read_text()[:-150])
-    assert "extri.yml" in fault(tmp_path / "intri.yml", SIZES)
-
-
-# --- Real files, where they are at hand ---------------------------------------------------------
-
-REAL = Path(__file__).parents[3].parent / "shared" / "calibration"
-needs_real_files = pytest.mark.skipif(not REAL.is_dir(), reason="the real files are not at hand")
-
-
-@needs_real_files
-def test_the_real_qualisys_file_agrees_with_its_toml_twin():
-    qca_cameras = read_calibration(REAL / "qualisys_qca" / "Calib.qca.txt").cameras
-    toml_cameras = read_calibration(REAL / "pose2sim_toml" / "Calib_2024-02_pose2sim.toml").cameras
-    grid = np.stack(np.meshgrid([-0.5, 0.5], [-0.5, 0.5], [0.1, 1.8]), axis=-1).reshape(-1, 3)
-    for ours, theirs in zip(qca_cameras, toml_cameras, strict=True):
-        np.testing.assert_allclose(ours.centre, theirs.centre, atol=0.001)
-        # the twin's writer divided the lens coefficients by 64 as well (see the reader's head)
-        twin = replace(theirs, distortion=theirs.distortion * 64)
-        assert np.abs(ours.project(grid) - twin.project(grid)).max() < 0.1
-
-
-@needs_real_files
-@pytest.mark.parametrize(
-    ("file", "count", "spread"),
-    [
-        ("anipose_caliscope_toml/caliscope_post_optimization_camera_array.toml", 4, (0.5, 3)),
-        ("pose2sim_toml/Calib_2024-02_pose2sim.toml", 4, (5, 8)),
-        ("qualisys_qca/Calib.qca.txt", 4, (5, 8)),
-        ("easymocap_yml", 23, (4, 8)),
-    ],
-)
-def test_real_files_give_cameras_metres_apart_that_undistort(file, count, spread):
-    sizes = {f"Camera_B{n}": (1024, 1024) for n in range(1, 24)}
-    cameras = read_calibration(REAL / file, CalibrationSettings(sizes=sizes)).cameras
-    assert len(cameras) == count
-    centres = np.array([camera.centre for camera in cameras])
-    widest = np.linalg.norm(centres[:, None] - centres, axis=2).max()
-    assert spread[0] < widest < spread[1]
-    for camera in cameras:
-        assert Undistortion(camera).observed.mean() > 0.7
