@@ -79,3 +79,7 @@ class Evaluator(Protocol):
     def bounds(self, poses: np.ndarray, segments: Sequence[int]) -> np.ndarray:
         """(N, V, 4) int: x0, y0, x1, y1 (exclusive), px that the segments can cover, unclipped."""
         ...
+
+    def transforms(self, poses: np.ndarray) -> np.ndarray:
+        """(N, J, 3, 4) world_from_joint of poses (N, D), metres."""
+        ...

@@ -20,6 +20,7 @@ import numpy as np
 
 from ..body.body import Body, Part
 from ..body.kinematics import clamped
+from ..body.limits import Limits
 from ..cameras.camera import Camera
 from ..energy.evaluator import Evaluator
 from ..energy.weight_maps import halved, xor_weight_maps
@@ -96,6 +97,7 @@ class HierarchicalTracker:
         self.evaluator = make_evaluator(body, cameras)
         self.half_evaluator = make_evaluator(body, half)
         self.torso_volume = TorsoVolume.of(body)
+        self.limits = {part.name: Limits.of(body, part.dofs) for part in body.parts}
 
     def fit(
         self, silhouettes: tuple[Silhouette, ...], last: np.ndarray, predicted: np.ndarray
@@ -139,7 +141,7 @@ class _FrameSearch:
         dofs = list(part.dofs)
         if with_grid and part.grid:
             self._search_grid(part, energy)
-        steps = first_steps(self.tracker.body, self.tracker.cameras, self.pose, part, tip_px=2.0)
+        steps = first_steps(energy.evaluator, self.pose, part, tip_px=2.0)
         found = downhill(energy, self.pose[dofs], steps, settings.sweeps, tolerance=2e-3)
         self.evaluations += found.evaluations
         if found.energy < FORBIDDEN:
@@ -175,7 +177,10 @@ class _FrameSearch:
             evaluator = tracker.evaluator
             weights = evaluator.masked(self.weights, self.pose, part.segments, windows)
         torso = tracker.torso_volume if part.role == "limb" else None
-        return PartEnergy(evaluator, weights, self.pose.copy(), part, torso, self.prior_px)
+        limits = tracker.limits[part.name]
+        return PartEnergy(
+            evaluator, weights, self.pose.copy(), part, limits, torso, self.prior_px
+        )
 
     def _whole_energies(self, poses: np.ndarray) -> np.ndarray:
         self.evaluations += len(poses)

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..body.body import Body, Part
-from ..body.kinematics import joint_transforms, within_limits
+from ..body.body import Part
+from ..body.limits import Limits
 from ..cameras.camera import Camera
 from ..energy.evaluator import Evaluator, Weights
 from .torso_volume import TorsoVolume
@@ -26,6 +26,7 @@ class PartEnergy:
         weights: the frame's weights, the other parts' silhouettes masked out.
         pose: (D,) the whole body's pose.
         part: what is searched.
+        limits: of the part's DOFs.
         torso: volume that limbs must stay out of; None for parts that cannot enter it.
         prior_px: energy in px of one standard deviation away from the rest pose.
     """
@@ -34,16 +35,19 @@ class PartEnergy:
     weights: Weights
     pose: np.ndarray
     part: Part
+    limits: Limits
     torso: TorsoVolume | None
     prior_px: float
 
     def __call__(self, values: np.ndarray) -> np.ndarray:
-        body, part = self.evaluator.body, self.part
+        """(N,) energies of values (N, n)."""
+        part = self.part
         poses = np.repeat(self.pose[None], len(values), axis=0)
         poses[:, part.dofs] = values
-        allowed = within_limits(body, poses)
+        allowed = self.limits.allow(values)
         if self.torso is not None:
-            allowed[allowed] = ~self.torso.holds_limb(poses[allowed], part)
+            transforms = self.evaluator.transforms(poses[allowed])
+            allowed[allowed] = ~self.torso.holds_limb(transforms, part)
         energies = np.full(len(values), FORBIDDEN)
         if allowed.any():
             per_view = self.evaluator.energies(self.weights, poses[allowed], part.segments)
@@ -55,22 +59,21 @@ class PartEnergy:
         return self.prior_px * ((values / spread) ** 2).sum(axis=1)
 
 
-def first_steps(
-    body: Body, cameras: tuple[Camera, ...], pose: np.ndarray, part: Part, tip_px: float
-) -> np.ndarray:
-    """(n,) change of each of the part's DOFs that moves the part's tip by ``tip_px`` in the mean view.
+def first_steps(evaluator: Evaluator, pose: np.ndarray, part: Part, tip_px: float) -> np.ndarray:
+    """(n,) change of each of the part's DOFs that moves the part's tip by ``tip_px``.
 
-    The tip is whichever joint or bone end of the part moves most.
+    The tip is whichever joint or bone end of the part moves most; pixels are those of the mean view.
     """
-    epsilon = 1e-3
+    body, epsilon = evaluator.body, 1e-3
     dofs = list(part.dofs)
     poses = np.repeat(pose[None], len(dofs) + 1, axis=0)
     poses[np.arange(1, len(dofs) + 1), dofs] += epsilon
     joints = np.unique(body.segment_joints[list(part.segments)])
-    transforms = joint_transforms(body, poses)[:, joints]
+    transforms = evaluator.transforms(poses)[:, joints]
     ends = np.einsum("njab,jb->nja", transforms[..., :3], body.tails[joints]) + transforms[..., 3]
     lever = np.linalg.norm(ends[1:] - ends[0], axis=2).max(axis=1) / epsilon
-    return tip_px * metres_per_pixel(cameras, ends[0].mean(axis=0)) / np.maximum(lever, 0.02)
+    pixel = metres_per_pixel(evaluator.cameras, ends[0].mean(axis=0))
+    return tip_px * pixel / np.maximum(lever, 0.02)
 
 
 def metres_per_pixel(cameras: tuple[Camera, ...], point: np.ndarray) -> float:

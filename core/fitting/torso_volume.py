@@ -10,7 +10,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..body.body import Body, Part
-from ..body.kinematics import joint_transforms
 
 _SHARE = 0.75
 """Size of the forbidden core relative to the segment's box: flesh gives way, ribs do not."""
@@ -43,9 +42,11 @@ class TorsoVolume:
         radii = np.array([_SHARE * (high - low) / 2 for low, high in boxes]).reshape(-1, 3)
         return cls(body, body.segment_joints[torso], centres, radii)
 
-    def holds_limb(self, poses: np.ndarray, part: Part) -> np.ndarray:
-        """(N,) bool: whether a joint beyond the part's first, or a bone's end, lies inside."""
-        transforms = joint_transforms(self.body, poses)
+    def holds_limb(self, transforms: np.ndarray, part: Part) -> np.ndarray:
+        """(N,) bool: whether a joint beyond the part's first, or a bone's end, lies inside.
+
+        ``transforms`` (N, J, 3, 4) are world_from_joint of the candidates.
+        """
         joints = np.unique(self.body.segment_joints[list(part.segments)])
         carried = transforms[:, joints]
         tails = (
