@@ -16,7 +16,7 @@ from enum import IntEnum
 
 import numpy as np
 
-from ..geometry.arrays import frozen_array
+from ..geometry.arrays import check_indices, frozen_array
 
 POINT_NAMES = (
     "head", "neck",
@@ -68,6 +68,10 @@ class Dofs:
                 raise ValueError(f"expected {name} of shape {shape} without NaN")
             values.setflags(write=False)
             set_(self, name, values)
+        swings = np.flatnonzero(self.kinds == DofKind.SWING)
+        apart = len(swings) % 2 or (swings[1::2] - swings[::2] != 1).any()
+        if apart or (self.joints[swings[1::2]] != self.joints[swings[::2]]).any():
+            raise ValueError("expected the rows of a swing in neighbouring pairs of one joint")
         if len(set(self.names)) != count or len(self.directions) != count:
             raise ValueError("expected one unique name and one direction for every DOF")
 
@@ -96,8 +100,12 @@ class Surface:
         set_ = object.__setattr__
         set_(self, "vertices", frozen_array(self.vertices, (None, 3), "vertices", np.float32))
         set_(self, "triangles", frozen_array(self.triangles, (None, 3), "triangles", np.int32))
-        for name in ("vertex_starts", "triangle_starts"):
-            set_(self, name, frozen_array(getattr(self, name), (None,), name, np.int32))
+        check_indices(self.triangles, len(self.vertices), "triangles")
+        for name, items in (("vertex_starts", self.vertices), ("triangle_starts", self.triangles)):
+            starts = frozen_array(getattr(self, name), (None,), name, np.int32)
+            if (np.diff(starts) < 0).any() or [*starts[:1], *starts[-1:]] != [0, len(items)]:
+                raise ValueError(f"expected {name} rising from 0 to {len(items)}, got {starts}")
+            set_(self, name, starts)
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,6 +170,20 @@ class Body:
             set_(self, name, frozen_array(getattr(self, name), (count, 3), name))
         for name, count in (("segment_joints", segments), ("point_joints", points)):
             set_(self, name, frozen_array(getattr(self, name), (count,), name, np.int32))
+            check_indices(getattr(self, name), joints, name)
+        cones = {j: frozen_array(c, (None, 2), "a cone") for j, c in self.cones.items()}
+        set_(self, "cones", cones)
+        self._check_tables()
+
+    def _check_tables(self):
+        joints, segments = len(self.joint_names), len(self.segment_names)
+        check_indices(self.dofs.joints, joints, "joints of DOFs")
+        check_indices(list(self.cones), joints, "joints of cones")
+        for part in self.parts:
+            check_indices((*part.dofs, *part.grid), len(self.dofs), f"DOFs of {part.name}")
+            check_indices(part.segments, segments, f"segments of {part.name}")
+        if (np.diff(self.dofs.joints) < 0).any():
+            raise ValueError("expected the DOF table ordered by joint")
         if (self.parents >= np.arange(joints)).any():
             raise ValueError("expected parents before their children")
         if any(len(surface.vertex_starts) != segments + 1 for surface in self.surfaces):

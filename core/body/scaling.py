@@ -1,20 +1,25 @@
-"""Bodies of another size."""
+"""A body of another size."""
 
 from dataclasses import replace
 
-from .body import Body, Surface
+from .body import Body
 
 
 def scaled(body: Body, factor: float) -> Body:
-    """``body`` grown uniformly by ``factor``; angles and limits stay."""
-    surfaces = tuple(
-        Surface(s.vertices * factor, s.triangles, s.vertex_starts, s.triangle_starts)
-        for s in body.surfaces
-    )
+    """The body with every length and girth times ``factor``.
+
+    Angles, limits (translations included) and rest priors stay as they are.
+
+    Raises:
+        ValueError: a factor that is not above 0.
+    """
+    if not factor > 0:
+        raise ValueError(f"expected a factor above 0, got {factor}")
+    surfaces = tuple(replace(s, vertices=s.vertices * factor) for s in body.surfaces)
     return replace(
         body,
         offsets=body.offsets * factor,
         tails=body.tails * factor,
-        surfaces=surfaces,
         point_offsets=body.point_offsets * factor,
+        surfaces=surfaces,
     )

@@ -26,3 +26,16 @@ def frozen_array(values, shape: tuple[int | None, ...], name: str, dtype=float) 
         raise ValueError(f"expected finite numbers in {name}, got NaN or infinity")
     array.setflags(write=False)
     return array
+
+
+def check_indices(values, count: int, name: str) -> None:
+    """Checks that all integers in ``values`` index into ``count`` things.
+
+    Raises:
+        ValueError: one is negative or too large.
+    """
+    values = np.asarray(values, dtype=np.int64)
+    if values.size and (values.min() < 0 or values.max() >= count):
+        raise ValueError(
+            f"expected {name} from 0 to {count - 1}, got {values.min()} to {values.max()}"
+        )

@@ -1,0 +1,124 @@
+"""body.npz: a whole body as plain arrays, nothing pickled.
+
+Lists of lists (cones, parts) are stored end to end with their starts, as in CSR matrices.
+"""
+
+from collections.abc import Iterable
+from itertools import pairwise
+from pathlib import Path
+from zipfile import BadZipFile
+
+import numpy as np
+
+from ..errors import MocapError
+from .body import Body, Dofs, Part, Surface
+
+VERSION = 1
+
+ARRAYS = ("parents", "offsets", "tails", "segment_joints", "point_joints", "point_offsets")
+DOF_ARRAYS = ("joints", "kinds", "axes", "limits", "rest_spread")
+SURFACE_ARRAYS = ("vertices", "triangles", "vertex_starts", "triangle_starts")
+PART_LISTS = ("dofs", "grid", "segments")
+
+
+def write_body(path: Path, body: Body) -> None:
+    """Writes ``body`` whole or not at all."""
+    partial = path.with_name(path.name + ".partial")
+    with partial.open("wb") as stream:
+        np.savez_compressed(stream, version=VERSION, **_packed(body))
+    partial.replace(path)
+
+
+def _packed(body: Body) -> dict[str, np.ndarray]:
+    cones = [body.cones[joint] for joint in body.cones]
+    values = {
+        "name": body.name,
+        "joint_names": body.joint_names,
+        "segment_names": body.segment_names,
+        "dof_names": body.dofs.names,
+        "dof_directions": body.dofs.directions,
+        "cone_joints": np.array(list(body.cones), np.int32),
+        "cone_starts": _starts(cones),
+        "cone_corners": np.concatenate([*cones, np.zeros((0, 2))]),
+        "levels": len(body.surfaces),
+        "part_names": [part.name for part in body.parts],
+        "part_roles": [part.role for part in body.parts],
+    }
+    values |= {name: getattr(body, name) for name in ARRAYS}
+    values |= {f"dof_{name}": getattr(body.dofs, name) for name in DOF_ARRAYS}
+    for level, surface in enumerate(body.surfaces):
+        values |= {f"surface_{level}_{name}": getattr(surface, name) for name in SURFACE_ARRAYS}
+    for name in PART_LISTS:
+        lists = [getattr(part, name) for part in body.parts]
+        values[f"part_{name}"] = np.array([i for indices in lists for i in indices], np.int32)
+        values[f"part_{name}_starts"] = _starts(lists)
+    return {name: np.asarray(value) for name, value in values.items()}
+
+
+def _starts(lists: Iterable) -> np.ndarray:
+    return np.cumsum([0, *map(len, lists)]).astype(np.int32)
+
+
+def read_body(path: Path) -> Body:
+    """The body stored in ``path``.
+
+    Raises:
+        MocapError: no such file, not a body file, one of another version, or a damaged one.
+    """
+    remedy = "give the body.npz that fit or initialise wrote"
+    try:
+        with np.load(path, allow_pickle=False) as data:
+            stored = {name: data[name] for name in data.files}
+    except (OSError, ValueError, EOFError, AttributeError, BadZipFile) as error:
+        raise MocapError("cannot be read as body.npz", remedy, file=path) from error
+    if "version" not in stored or "dof_names" not in stored:
+        raise MocapError("is no body file", remedy, file=path)
+    if stored["version"] != VERSION:
+        raise MocapError(
+            f"is a body file of version {stored['version']}, not {VERSION}",
+            "write it again",
+            file=path,
+        )
+    try:
+        return _unpacked(stored)
+    except (KeyError, ValueError, IndexError) as error:
+        raise MocapError(f"is a damaged body file ({error})", remedy, file=path) from error
+
+
+def _unpacked(stored: dict[str, np.ndarray]) -> Body:
+    corners = _lists(stored["cone_corners"], stored["cone_starts"])
+    return Body(
+        name=str(stored["name"]),
+        joint_names=_texts(stored["joint_names"]),
+        dofs=Dofs(
+            names=_texts(stored["dof_names"]),
+            directions=_texts(stored["dof_directions"]),
+            **{name: stored[f"dof_{name}"] for name in DOF_ARRAYS},
+        ),
+        cones=dict(zip(stored["cone_joints"].tolist(), corners, strict=True)),
+        segment_names=_texts(stored["segment_names"]),
+        surfaces=tuple(_surface(stored, level) for level in range(int(stored["levels"]))),
+        parts=_parts(stored),
+        **{name: stored[name] for name in ARRAYS},
+    )
+
+
+def _surface(stored: dict[str, np.ndarray], level: int) -> Surface:
+    return Surface(**{name: stored[f"surface_{level}_{name}"] for name in SURFACE_ARRAYS})
+
+
+def _parts(stored: dict[str, np.ndarray]) -> tuple[Part, ...]:
+    columns = [
+        [tuple(x.tolist()) for x in _lists(stored[f"part_{n}"], stored[f"part_{n}_starts"])]
+        for n in PART_LISTS
+    ]
+    names, roles = _texts(stored["part_names"]), _texts(stored["part_roles"])
+    return tuple(Part(*row) for row in zip(names, roles, *columns, strict=True))
+
+
+def _lists(values: np.ndarray, starts: np.ndarray) -> list[np.ndarray]:
+    return [values[a:b] for a, b in pairwise(starts)]
+
+
+def _texts(values: np.ndarray) -> tuple[str, ...]:
+    return tuple(str(text) for text in values)
