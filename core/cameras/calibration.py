@@ -7,7 +7,7 @@ be overridden. The result is always metres, Z up, OpenCV axes (FORMATS).
 
 import re
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -44,12 +44,14 @@ class CalibrationSettings:
         units: "m", "cm" or "mm"; None takes the format's own or guesses.
         up: the file's axis that points up: "z", "-z", "y", "-y", "x", "-x"; None means "z".
         sizes: (width, height) in px by camera name, for formats that do not tell.
+        only: names of the cameras to keep, so that the others need no size; None keeps all.
     """
 
     format: str | None = None
     units: str | None = None
     up: str | None = None
     sizes: Mapping[str, tuple[int, int]] = field(default_factory=dict)
+    only: Collection[str] | None = None
 
     def __post_init__(self):
         _expect_one_of("format", self.format, [reader.key for reader in READERS])
@@ -88,11 +90,13 @@ def read_calibration(path: str | Path, settings: CalibrationSettings | None = No
     content = _checked_content(path, reader)
     units, guessed = _units(reader, content.cameras, settings.units)
     cameras = tuple(
-        _metric_camera(path, camera, METRES_PER_UNIT[units], settings) for camera in content.cameras
+        _metric_camera(path, camera, METRES_PER_UNIT[units], settings)
+        for camera in content.cameras
+        if settings.only is None or camera.name in settings.only
     )
     notes = list(content.notes)
     if guessed:
-        notes.append(_unit_note(cameras, units))
+        notes.append(_unit_note(content.cameras, units))
     if settings.up is None:
         notes.extend(_up_notes(cameras))
     return Calibration(cameras, reader.title, units, guessed, tuple(notes))
@@ -174,7 +178,7 @@ def _checked_content(path: Path, reader: Reader) -> FileContent:
     return FileContent(tuple(ordered), content.notes)
 
 
-def _centres(cameras) -> np.ndarray:
+def _centres(cameras: tuple[FileCamera, ...]) -> np.ndarray:
     return np.array([-camera.rotation.T @ camera.translation for camera in cameras])
 
 
@@ -193,8 +197,8 @@ def _units(reader: Reader, cameras: tuple[FileCamera, ...], wanted: str | None) 
     return ("mm" if _spread(_centres(cameras)) > WIDEST_SPREAD_IN_METRES else "m"), True
 
 
-def _unit_note(cameras: tuple[Camera, ...], units: str) -> str:
-    spread = _spread(np.array([camera.centre for camera in cameras]))
+def _unit_note(cameras: tuple[FileCamera, ...], units: str) -> str:
+    spread = _spread(_centres(cameras)) * METRES_PER_UNIT[units]
     return (
         f"units are taken as {units}, which puts the cameras {spread:.2f} m apart; "
         'set units = "m", "cm" or "mm" if that is wrong'

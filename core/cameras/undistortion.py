@@ -69,8 +69,10 @@ class Undistortion:
         is_mask = picture.dtype == bool
         pixels = picture.astype(np.uint8) * 255 if is_mask else picture
         result = cv2.remap(pixels, *self._maps, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
-        result[~self.observed] = 0
-        return result >= 128 if is_mask else result
+        if is_mask:
+            return (result >= 128) & self.observed
+        result[self._unobserved] = 0
+        return result
 
     @cached_property
     def observed(self) -> np.ndarray:
@@ -79,7 +81,7 @@ class Undistortion:
         if self.is_identity:
             observed = np.ones((height, width), bool)
         else:
-            u, v = self._maps
+            u, v = self._source_places()
             w, h = self.source.size
             observed = (u >= -0.5) & (u <= w - 0.5) & (v >= -0.5) & (v <= h - 0.5)
             observed &= self._radii() < _fold_radius(self.source)
@@ -88,6 +90,15 @@ class Undistortion:
 
     @cached_property
     def _maps(self) -> tuple[np.ndarray, np.ndarray]:
+        """The places in remap's fixed-point form, which it would else make for every picture."""
+        return cv2.convertMaps(*self._source_places(), cv2.CV_16SC2)
+
+    @cached_property
+    def _unobserved(self) -> tuple[np.ndarray, ...]:
+        return np.nonzero(~self.observed)
+
+    def _source_places(self) -> tuple[np.ndarray, np.ndarray]:
+        """Columns and rows (H, W), float32, in the source of every pixel."""
         source = self.source
         init = (
             cv2.fisheye.initUndistortRectifyMap if source.fisheye else cv2.initUndistortRectifyMap

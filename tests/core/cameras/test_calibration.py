@@ -193,7 +193,7 @@ def test_a_missing_file_says_so(tmp_path, fault):
 
 
 def test_an_empty_file_says_so(tmp_path, fault):
-    assert "empty" in fault(written(tmp_path, " \n"))
+    assert "calibration is empty;" in fault(written(tmp_path, " \n"))
 
 
 @pytest.mark.parametrize("content", ["version = 1\n[cameras]\n", '{"cameras": []}', "\x80\x04."])

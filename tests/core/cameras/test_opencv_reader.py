@@ -63,6 +63,12 @@ def test_an_unknown_size_names_the_camera_and_the_remedy(tmp_path, fault):
     assert "give the footage's size" in line
 
 
+def test_cameras_that_are_left_out_need_no_size(tmp_path):
+    write_pair(tmp_path)
+    settings = CalibrationSettings(sizes={"cam_10": (480, 640)}, only=["cam_10"])
+    assert [camera.name for camera in read_calibration(tmp_path, settings).cameras] == ["cam_10"]
+
+
 def test_sizes_in_the_pair_itself_are_taken(tmp_path):
     write_pair(tmp_path)
     with (tmp_path / "intri.yml").open("a") as file:

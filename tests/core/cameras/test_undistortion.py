@@ -108,6 +108,13 @@ def test_a_full_mask_becomes_exactly_the_observed_pixels(lens):
     assert result.shape == undistortion.camera.size[::-1]
 
 
+def test_a_white_picture_stays_white_where_observed_and_is_black_elsewhere(lens):
+    undistortion = Undistortion(lens)
+    result = undistortion.undistorted(np.full((*lens.size[::-1], 3), 255, np.uint8))
+    assert (result[undistortion.observed] == 255).all()
+    assert not result[~undistortion.observed].any()
+
+
 def test_observed_pixels_are_those_whose_ray_meets_the_source(lens):
     undistortion = Undistortion(lens)
     observed = undistortion.observed
