@@ -2,21 +2,17 @@
 
 Per pixel the background is what stays: the densest third of the colours seen over time, ordered by
 brightness (the half-sample mode's idea, which bears the performer for up to two thirds of the time
-where a median bears him for half). Where he stays longer than that, inside ``box``, a still of the
-same view with him elsewhere says what the background looks like: it is brought onto the footage
-(``registration``), its exposure is matched (``drift``), and
+where a median bears him for half). Two helps where he stays longer than that:
 
-* frames that agree with it there give the plate, as they have the footage's own sharpness;
-* where none agrees, the still itself does;
-* where the still shows him, inside ``still_box``, it is not asked.
+* inside ``box``, a still of the same view with him elsewhere says what the background looks like:
+  it is brought onto the footage (``registration``) and its exposure is matched (``drift``). Frames
+  that agree with it give the plate, as they have the footage's own sharpness; where none agrees,
+  the still itself does; where the still shows him, inside ``still_box``, it is not asked;
+* inside a patch, only the frames are looked at in which he has left it.
 
 The spread is the deviation of the frames that agree. Where the still was taken over, half a pixel
 of its gradient is added, for the registration and the difference in sharpness.
 """
-
-from collections.abc import Sequence
-from dataclasses import dataclass
-from pathlib import Path
 
 import cv2
 import numpy as np
@@ -25,63 +21,61 @@ from ..footage.footage import Footage
 from ..footage.pictures import colour_picture, read_picture
 from .drift import drift_between
 from .plate import Plate
+from .plate_recipe import Box, Patch, PlateRecipe
 from .registration import registered
-
-Box = tuple[int, int, int, int]
 
 _BAND = 64
 _DENSEST = 1 / 3
-_AGREE = 5.0
-_LEAST_AGREE = 12.0
+_AGREE = 12.0
+_FEWEST = 2
+_SAMPLES = 33
 
 
-@dataclass(frozen=True, eq=False)
-class Still:
-    """A further picture of the same view.
-
-    Attributes:
-        picture: (H', W', 3) uint8 BGR.
-        file: where it comes from.
-        performer: (left, top, right, bottom) px of the performer in the still, once it lies on
-            the footage; None when nobody is in it.
-    """
-
-    picture: np.ndarray
-    file: Path
-    performer: Box | None = None
-
-
-def read_still(path: Path, camera: str, performer: Box | None = None) -> Still:
-    """The still of ``path``.
-
-    Raises:
-        MocapError: no such file, or not readable.
-    """
-    return Still(colour_picture(read_picture(path, camera)), path, performer)
-
-
-def sampled(footage: Footage, frames: tuple[int, int], count: int = 33) -> np.ndarray:
-    """(T, H, W, 3) uint8 pictures, ``count`` or fewer, spread evenly over ``frames``."""
-    first, last = frames
-    chosen = np.unique(np.linspace(first, last, min(count, last - first + 1)).round().astype(int))
-    return np.stack([colour_picture(footage.picture(int(frame))) for frame in chosen])
-
-
-def plate_from(pictures: np.ndarray, stills: Sequence[Still] = (), box: Box | None = None) -> Plate:
+def plate_from(footage: Footage, frames: tuple[int, int], recipe: PlateRecipe) -> Plate:
     """The plate of footage with a performer in it.
 
+    About 33 pictures, spread evenly over ``frames``, are held at a time.
+
     Args:
-        pictures: (T, H, W, 3) uint8 of one camera, spread over the take.
-        stills: further pictures of the same view; only used inside ``box``.
-        box: (left, top, right, bottom) px where the performer may stay; None for everywhere.
+        footage: one camera's pictures.
+        frames: first and last frame to look at, inclusive.
+        recipe: where stills and chosen frames help.
 
     Raises:
-        MocapError: a still shows another scene.
+        MocapError: a frame or a still cannot be read, or the still shows another scene.
     """
+    pictures = _sampled(footage, frames)
     plate = _lasting(pictures)
-    for still in stills:
-        plate = _with_still(plate, pictures, still, box)
+    if recipe.still is not None:
+        still = colour_picture(read_picture(recipe.still, footage.camera))
+        reference = np.round(plate.mean).astype(np.uint8)
+        still = registered(still, reference, recipe.still).astype(np.float32)
+        trusted = _inside(recipe.box, still.shape[:2], everywhere=True)
+        trusted &= ~_inside(recipe.still_box, still.shape[:2], everywhere=False)
+        plate = _with_still(plate, pictures, still, trusted)
+    for patch in recipe.patches:
+        plate = _with_patch(plate, footage, patch)
     return plate
+
+
+def _sampled(footage: Footage, frames: tuple[int, int], box: Box | None = None) -> np.ndarray:
+    """(T, H, W, 3) uint8 pictures, or boxes of them, spread evenly over ``frames``."""
+    first, last = frames
+    count = min(_SAMPLES, last - first + 1)
+    chosen = np.unique(np.linspace(first, last, count).round().astype(int))
+    left, top, right, bottom = box or (0, 0, *footage.size)
+    return np.stack(
+        [colour_picture(footage.picture(int(frame)))[top:bottom, left:right] for frame in chosen]
+    )
+
+
+def _with_patch(plate: Plate, footage: Footage, patch: Patch) -> Plate:
+    left, top, right, bottom = patch.box
+    inner = _lasting(_sampled(footage, patch.frames, patch.box))
+    mean, spread = plate.mean.copy(), plate.spread.copy()
+    mean[top:bottom, left:right] = inner.mean
+    spread[top:bottom, left:right] = inner.spread
+    return Plate(mean, spread)
 
 
 def _lasting(pictures: np.ndarray) -> Plate:
@@ -98,7 +92,7 @@ def _densest(band: np.ndarray) -> np.ndarray:
     """(H, W, 3) mean colour of the third of ``band`` (T, H, W, 3) that is closest in brightness."""
     count = len(band)
     size = max(1, int(np.ceil(count * _DENSEST)))
-    brightness = band.sum(axis=3)
+    brightness = band[..., 0] + band[..., 1] + band[..., 2]
     order = np.argsort(brightness, axis=0)
     ordered = np.take_along_axis(brightness, order, axis=0)
     start = np.argmin(ordered[size - 1 :] - ordered[: count - size + 1], axis=0)
@@ -107,8 +101,8 @@ def _densest(band: np.ndarray) -> np.ndarray:
 
 
 def _agreeing(band: np.ndarray, guess: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Mean and spread (H, W, 3) of the frames that agree with ``guess``, and their number (H, W)."""
-    agrees = (np.abs(band - guess).max(axis=3) < _LEAST_AGREE)[..., None]
+    """Mean and spread (H, W, 3) of the frames that agree with ``guess``, and how many do."""
+    agrees = (np.abs(band - guess) < _AGREE).all(axis=3, keepdims=True)
     count = agrees.sum(axis=0)
     divisor = np.maximum(count, 1)
     mean = np.where(count > 0, (band * agrees).sum(axis=0) / divisor, guess)
@@ -116,31 +110,30 @@ def _agreeing(band: np.ndarray, guess: np.ndarray) -> tuple[np.ndarray, np.ndarr
     return mean, np.sqrt(variance), count[..., 0]
 
 
-def _with_still(plate: Plate, pictures: np.ndarray, still: Still, box: Box | None) -> Plate:
-    reference = np.round(plate.mean).astype(np.uint8)
-    picture = registered(still.picture, reference, still.file).astype(np.float32)
-    trusted = _inside(box, reference.shape) if box else np.ones(reference.shape[:2], bool)
-    if still.performer:
-        trusted &= ~_inside(still.performer, reference.shape)
-    drift = drift_between(picture[::4, ::4], plate.mean[::4, ::4])
-    picture = drift.applied(picture)
+def _with_still(
+    plate: Plate, pictures: np.ndarray, still: np.ndarray, trusted: np.ndarray
+) -> Plate:
+    drift = drift_between(still[::4, ::4], plate.mean[::4, ::4])
+    still = drift.applied(still)
     mean, spread = plate.mean.copy(), plate.spread.copy()
-    blurred = _half_pixel_gradient(picture) + drift.noise.astype(np.float32)
+    blurred = _half_pixel_gradient(still) + drift.noise.astype(np.float32)
     for top in range(0, len(mean), _BAND):
         rows = slice(top, top + _BAND)
-        band = pictures[:, rows].astype(np.float32)
-        seen, deviation, count = _agreeing(band, picture[rows])
-        enough = (count >= 2)[..., None]
-        use = trusted[rows][..., None]
-        mean[rows] = np.where(use, seen, mean[rows])
+        seen, deviation, count = _agreeing(pictures[:, rows].astype(np.float32), still[rows])
+        enough = (count >= _FEWEST)[..., None]
+        use = trusted[rows, :, None]
+        mean[rows] = np.where(use, np.where(enough, seen, still[rows]), mean[rows])
         spread[rows] = np.where(use, np.where(enough, deviation, blurred[rows]), spread[rows])
     return Plate(mean, spread)
 
 
-def _inside(box: Box, shape: tuple[int, ...]) -> np.ndarray:
+def _inside(box: Box | None, shape: tuple[int, int], everywhere: bool) -> np.ndarray:
+    """(H, W) bool, True inside ``box``; without a box, ``everywhere``."""
+    if box is None:
+        return np.full(shape, everywhere)
     left, top, right, bottom = box
-    inside = np.zeros(shape[:2], bool)
-    inside[max(top, 0) : bottom, max(left, 0) : right] = True
+    inside = np.zeros(shape, bool)
+    inside[top:bottom, left:right] = True
     return inside
 
 

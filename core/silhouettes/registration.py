@@ -19,7 +19,7 @@ _ALIGNED_PX = 0.3
 
 
 def registered(still: np.ndarray, reference: np.ndarray, file: Path) -> np.ndarray:
-    """``still`` resampled to the pixels of ``reference``; where it does not reach, its edge repeats.
+    """``still`` in the pixels of ``reference``; where it does not reach, its edge repeats.
 
     Args:
         still: (H', W', 3) uint8 BGR.

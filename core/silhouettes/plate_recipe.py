@@ -1,0 +1,122 @@
+"""How the plate of each camera is made when nobody filmed the empty scene.
+
+A TOML file with a table per camera, whose paths are relative to it:
+
+.. code-block:: toml
+
+    [cam01]
+    still = "stills/cam01.png"             # the same view with the performer elsewhere
+    box = [358, 303, 923, 1295]            # where the still is needed; left, top, right, bottom px
+    still_box = [110, 248, 361, 992]       # where the still shows the performer
+    patches = [{ box = [600, 400, 860, 570], frames = [82, 86] }]   # frames that show it empty
+"""
+
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+
+from ..errors import MocapError
+
+Box = tuple[int, int, int, int]
+
+
+@dataclass(frozen=True)
+class Patch:
+    """Frames in which the performer has left a part of the picture.
+
+    Attributes:
+        box: (left, top, right, bottom) in footage px, the latter two exclusive.
+        frames: first and last frame, inclusive.
+    """
+
+    box: Box
+    frames: tuple[int, int]
+
+
+@dataclass(frozen=True)
+class PlateRecipe:
+    """Helps for the plate of one camera.
+
+    Attributes:
+        still: a picture of the same view with the performer elsewhere, or None.
+        box: where the still is needed, in footage px; None for everywhere.
+        still_box: where the still shows the performer, in footage px; None for nowhere.
+        patches: parts of the picture that some frames show empty.
+    """
+
+    still: Path | None = None
+    box: Box | None = None
+    still_box: Box | None = None
+    patches: tuple[Patch, ...] = ()
+
+
+def read_plate_recipes(path: Path) -> dict[str, PlateRecipe]:
+    """The recipes of ``path`` by camera name.
+
+    Raises:
+        MocapError: no such file, not TOML, or an entry that is none of a recipe's.
+    """
+    try:
+        tables = tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise MocapError(
+            f"cannot be read ({error.strerror})", "check the path", file=path
+        ) from error
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise MocapError(f"is not TOML: {error}", file=path) from error
+    return {camera: _recipe(table, path, camera) for camera, table in tables.items()}
+
+
+def _recipe(table, path: Path, camera: str) -> PlateRecipe:
+    _expect(isinstance(table, dict), "each camera has a table of its own", path, camera)
+    known = ("still", "box", "still_box", "patches")
+    for key in table:
+        _expect(key in known, f'unknown key "{key}"; known are {", ".join(known)}', path, camera)
+    still = table.get("still")
+    _expect(still is None or isinstance(still, str), "still is a path in quotes", path, camera)
+    patches = table.get("patches", [])
+    _expect(
+        isinstance(patches, list)
+        and all(isinstance(patch, dict) and set(patch) == {"box", "frames"} for patch in patches),
+        "patches are a list of { box = [left, top, right, bottom], frames = [first, last] }",
+        path,
+        camera,
+    )
+    return PlateRecipe(
+        still=None if still is None else path.parent / still,
+        box=_box(table.get("box"), path, camera),
+        still_box=_box(table.get("still_box"), path, camera),
+        patches=tuple(_patch(patch, path, camera) for patch in patches),
+    )
+
+
+def _patch(table: dict, path: Path, camera: str) -> Patch:
+    frames = table["frames"]
+    _expect(
+        _are_numbers(frames, 2) and 0 <= frames[0] <= frames[1],
+        "frames of a patch are [first, last]",
+        path,
+        camera,
+    )
+    return Patch(_box(table["box"], path, camera), tuple(frames))
+
+
+def _box(value, path: Path, camera: str) -> Box | None:
+    if value is None:
+        return None
+    _expect(
+        _are_numbers(value, 4) and 0 <= value[0] < value[2] and 0 <= value[1] < value[3],
+        "a box is [left, top, right, bottom] in px",
+        path,
+        camera,
+    )
+    return tuple(value)
+
+
+def _are_numbers(value, count: int) -> bool:
+    return isinstance(value, list) and len(value) == count and all(type(n) is int for n in value)
+
+
+def _expect(condition: bool, rule: str, path: Path, camera: str) -> None:
+    if not condition:
+        raise MocapError(rule, "see the comments of an example", file=path, camera=camera)
