@@ -6,11 +6,13 @@ another name every class would exist twice.
 """
 
 import os
+import sys
 import tempfile
 from pathlib import Path
 
-_resources = tempfile.TemporaryDirectory(prefix="silhouette_mocap_")
-os.environ["BLENDER_USER_RESOURCES"] = _resources.name  # read once, when bpy is first imported
+if "bpy" not in sys.modules:
+    _resources = tempfile.TemporaryDirectory(prefix="silhouette_mocap_")
+    os.environ["BLENDER_USER_RESOURCES"] = _resources.name  # read when bpy is first imported
 
 import bpy  # noqa: E402
 import numpy as np  # noqa: E402
@@ -25,7 +27,9 @@ _CHECKOUT = Path(__file__).resolve().parents[2]
 
 def _link_checkout():
     repository = Path(bpy.utils.user_resource("EXTENSIONS", path="user_default", create=True))
-    repository.joinpath("silhouette_mocap").symlink_to(_CHECKOUT, target_is_directory=True)
+    link = repository / "silhouette_mocap"
+    if not link.exists():
+        link.symlink_to(_CHECKOUT, target_is_directory=True)
     addon_utils.extensions_refresh(ensure_wheels=True)
 
 
