@@ -28,7 +28,7 @@ demo: .venv/.installed ## Fit the sample walk, from masks and from silhouette vi
 
 demo-real: .venv/.installed ## Fetch the real four-camera recording and fit it into out/balance
 	@.venv/bin/python sample_scenes/balance/fetch.py
-	@$(MOCAP) plate sample_scenes/balance/take.toml
+	@$(MOCAP) plate sample_scenes/balance/take.toml --recipes sample_scenes/balance/plates.toml
 	@$(MOCAP) masks sample_scenes/balance/take.toml --out out/balance/masks
 	@$(MOCAP) fit sample_scenes/balance/take.toml --out out/balance
 	@.venv/bin/python sample_scenes/table.py out/balance

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..body.storage import read_body
+from ..body.file import read_body
 from ..body.templates import template
 from ..cameras.arrangement import millimetres_per_pixel
 from ..cameras.camera import Camera

@@ -2,6 +2,8 @@
 
 import argparse
 import errno
+import os
+import sys
 import tempfile
 import traceback
 from collections.abc import Sequence
@@ -43,6 +45,10 @@ def main(argv: Sequence[str], exporter: Exporter | None = None) -> int:
     except KeyboardInterrupt:
         complain("interrupted")
         return INTERRUPTED
+    except BrokenPipeError:
+        # whoever read the output has enough of it
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return DONE
     except Exception as error:
         if isinstance(error, OSError) and error.errno in _DISK_FAULTS:
             complain(f"{error.filename or 'the disk'}: {error.strerror}; free or change it")

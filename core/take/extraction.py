@@ -1,6 +1,6 @@
 """Silhouettes and plates of a whole take, written to files."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,7 +12,8 @@ from ..footage.patterns import for_camera
 from ..progress import Progress
 from ..silhouettes.masks import write_masks
 from ..silhouettes.plate import write_plate
-from ..silhouettes.plate_making import Box, plate_from, read_still, sampled
+from ..silhouettes.plate_making import plate_from
+from ..silhouettes.plate_recipe import PlateRecipe
 from .take import Take
 from .views import View, Views
 
@@ -104,25 +105,16 @@ class _Tally:
         )
 
 
-@dataclass(frozen=True)
-class PlateRequest:
-    """Where a plate comes from, when there is no picture of the empty scene.
-
-    Attributes:
-        stills: path pattern with ``{camera}`` of a further still of each view; None for none.
-        boxes: camera name -> px (left, top, right, bottom) that the performer never leaves.
-        still_boxes: camera name -> px of the performer in the still.
-        frames: first and last frame to take the background from, inclusive; None leaves an end.
-    """
-
-    stills: str | None
-    boxes: Mapping[str, Box]
-    still_boxes: Mapping[str, Box]
-    frames: tuple[int | None, int | None] = (None, None)
-
-
-def make_plate(take: Take, camera: str, request: PlateRequest) -> Path:
+def make_plate(
+    take: Take, camera: str, recipe: PlateRecipe, frames: tuple[int | None, int | None]
+) -> Path:
     """Makes one camera's plate from its footage and writes it where the take expects it.
+
+    Args:
+        take: the take.
+        camera: the camera's name.
+        recipe: what helps, as nobody filmed the empty scene.
+        frames: first and last frame to look at, inclusive; None for the take's own.
 
     Raises:
         MocapError: the take has no footage or names no plate, or a picture cannot be read.
@@ -135,12 +127,8 @@ def make_plate(take: Take, camera: str, request: PlateRequest) -> Path:
         )  # fmt: skip
     footage = open_footage(files.video, camera, take.frames)
     first, last = take.frames or (footage.frames[0], footage.frames[-1])
-    begin, end = request.frames
-    pictures = sampled(footage, (first if begin is None else begin, last if end is None else end))
-    stills = []
-    if request.stills is not None:
-        still = Path(for_camera(request.stills, camera))
-        stills = [read_still(still, camera, request.still_boxes.get(camera))]
+    begin, end = frames
+    span = (first if begin is None else begin, last if end is None else end)
     path = Path(for_camera(files.plate, camera))
-    write_plate(path, plate_from(pictures, stills, request.boxes.get(camera)))
+    write_plate(path, plate_from(footage, span, recipe))
     return path

@@ -1,0 +1,206 @@
+"""What the commands answer, and their exit codes."""
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from silhouette_mocap.core import cli
+from silhouette_mocap.core.cli import main
+from silhouette_mocap.core.cli.main import COMMANDS
+from silhouette_mocap.core.errors import MocapError
+from silhouette_mocap.core.motion.motion import read_motion
+
+
+def failing(monkeypatch, failure):
+    def run(arguments, exporter):
+        raise failure
+
+    monkeypatch.setattr("silhouette_mocap.core.cli.info.run", run)
+
+
+def test_no_command_is_one_line_and_two(capsys):
+    assert main([]) == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1 and "see silhouette-mocap --help" in error
+
+
+@pytest.mark.parametrize("command", [command.NAME for command in COMMANDS])
+def test_every_command_has_help_with_an_example(command, capsys):
+    assert main([command, "--help"]) == 0
+    assert f"example: silhouette-mocap {command}" in " ".join(capsys.readouterr().out.split())
+
+
+def test_a_fault_of_the_input_is_one_line_and_two(monkeypatch, capsys):
+    failing(monkeypatch, MocapError("is\nbroken", "mend it", file="a.png", camera="c", frame=3))
+    assert main(["info", "take.toml"]) == 2
+    assert capsys.readouterr().err == (
+        "silhouette-mocap: a.png, camera c, frame 3: is broken; mend it\n"
+    )
+
+
+def test_a_full_disk_is_a_fault_of_the_input(monkeypatch, capsys):
+    failing(monkeypatch, OSError(28, "No space left on device", "out/motion.npz"))
+    assert main(["info", "take.toml"]) == 2
+    assert "out/motion.npz: No space left on device" in capsys.readouterr().err
+
+
+def test_an_internal_error_is_one_and_names_the_file_with_the_traceback(monkeypatch, capsys):
+    failing(monkeypatch, ZeroDivisionError("planted"))
+    assert main(["info", "take.toml"]) == 1
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1
+    named = Path(next(word for word in error.split() if "silhouette_mocap_error_" in word))
+    assert "ZeroDivisionError: planted" in named.read_text("utf-8")
+    named.unlink()
+
+
+def test_an_interrupt_is_130(monkeypatch, capsys):
+    failing(monkeypatch, KeyboardInterrupt())
+    assert main(["info", "take.toml"]) == 130
+
+
+def test_a_missing_take_is_two(tmp_path, capsys):
+    assert main(["fit", str(tmp_path / "take.toml"), "--out", str(tmp_path)]) == 2
+    assert "no such file" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["--frames", "3"],
+        ["--frames", "a:b"],
+        ["--export", "fbx,doc"],
+        ["--tracker", "magic"],
+        ["--progress", "json"],
+    ],
+)
+def test_wrong_words_are_two(words, small_take, tmp_path, capsys):
+    assert main(["fit", str(small_take), "--out", str(tmp_path), *words]) == 2
+    assert capsys.readouterr().err.count("\n") == 1
+
+
+def test_a_format_that_needs_blender_is_refused_before_the_fit(small_take, tmp_path, capsys):
+    out = tmp_path / "out"
+    assert main(["fit", str(small_take), "--out", str(out), "--export", "fbx"]) == 2
+    assert "pip install silhouette-mocap[blender]" in capsys.readouterr().err
+    assert not out.exists()
+
+
+def test_fit_then_score_then_export(quick_start, small_take, tmp_path, capsys):
+    words = ["--without", "cam_05", "--frames", ":1", "--export", "trc", "--strict"]
+    assert main(["fit", str(small_take), "--out", str(tmp_path), *words]) == 0
+    shown = capsys.readouterr()
+    assert "2 frames, IoU 0.9" in shown.out and "error to the truth" in shown.out
+    assert "fit 2/2  frame 1" in shown.err
+    assert read_motion(tmp_path / "motion.npz").camera_names == (
+        "cam_01", "cam_02", "cam_03", "cam_04",
+    )  # fmt: skip
+    truth = str(small_take.with_name("truth.npz"))
+    for prediction in ("motion.npz", "small.trc"):
+        words = ["score", str(tmp_path / prediction), truth, "--frames", "0:1", "--json"]
+        assert main([*words, str(tmp_path / "score.json")]) == 0
+        assert "2 frames, 0 missing, 0 lost" in capsys.readouterr().out
+    words = ["export", str(small_take), "--out", str(tmp_path), "--export", "trc"]
+    assert main(words) == 0
+
+
+def test_lost_frames_are_told_and_are_three_only_if_strict(
+    quick_start, small_take, tmp_path, monkeypatch, capsys
+):
+    recorded = cli.fit.fit
+
+    def losing(take, request, progress):
+        result = recorded(take, request, progress)
+        result.report["lost_frames"] = [0]
+        return result
+
+    monkeypatch.setattr("silhouette_mocap.core.cli.fit.fit", losing)
+    words = ["fit", str(small_take), "--out", str(tmp_path), "--frames", "0:0"]
+    assert main(words) == 0
+    assert "frames lost: 0" in capsys.readouterr().err
+    assert main([*words, "--strict"]) == 3
+
+
+def test_info_tells_what_is_there(small_take, capsys):
+    assert main(["info", str(small_take)]) == 0
+    out = capsys.readouterr().out
+    assert "all that fit needs is there" in out and "cam_05" in out and "truth.npz" in out
+
+
+def test_info_names_everything_that_is_missing(small_take, tmp_path, capsys):
+    folder = tmp_path / "copy"
+    (folder / "masks").mkdir(parents=True)
+    for name in ("cam_01", "cam_02", "cam_03", "cam_04", "cam_05"):
+        (folder / "masks" / name).symlink_to(small_take.parent / "masks" / name)
+    (folder / "masks" / "cam_03").unlink()
+    (folder / "calibration.toml").write_bytes(small_take.with_name("calibration.toml").read_bytes())
+    text = small_take.read_text("utf-8").replace("sixteen_segment", "centaur")
+    (folder / "take.toml").write_text(text, "utf-8")
+    root = str(tmp_path.parent.parent)
+    assert main(["info", str(folder / "take.toml"), "--root", root]) == 2
+    error = capsys.readouterr().err
+    assert "cam_03" in error and "centaur" in error
+
+
+def test_masks_are_written_with_a_quality_line_per_camera(small_take, tmp_path, capsys):
+    words = ["masks", str(small_take), "--out", str(tmp_path), "--progress", "none"]
+    assert main(words) == 0
+    shown = capsys.readouterr()
+    assert shown.out.count("cam_0") == 5 and not shown.err
+    assert len(list(tmp_path.glob("cam_0?/00000?.png"))) == 20
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="pipes of another kind")
+def test_output_that_nobody_reads_any_more_is_no_error(small_take):
+    program = "import sys; from silhouette_mocap.core.cli import main; sys.exit(main(sys.argv[1:]))"
+    reader, writer = os.pipe()
+    os.close(reader)
+    finished = subprocess.run(
+        [sys.executable, "-c", program, "info", str(small_take)],
+        stdout=writer, stderr=subprocess.PIPE, text=True, env={**os.environ, "PYTHONUNBUFFERED": "1"},
+    )  # fmt: skip
+    os.close(writer)
+    assert (finished.returncode, finished.stderr) == (0, "")
+
+
+# the small take, started at once and with a pause after each frame to be interrupted in
+PAUSING = """
+import sys, time
+import numpy as np
+from silhouette_mocap.core import pipeline
+from silhouette_mocap.core.cli import main
+from silhouette_mocap.core.initialisation.first_pose import FirstFit
+
+def started(body, cameras, silhouettes, request, make_evaluator):
+    return FirstFit(body, body.rest_pose, np.ones(len(cameras)), ())
+
+def pausing(tracker, pose, frames, track=pipeline.track):
+    for found in track(tracker, pose, frames):
+        yield found
+        time.sleep(1)
+
+pipeline.initialised, pipeline.track = started, pausing
+sys.exit(main(sys.argv[1:]))
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals of another kind")
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_ends_a_fit_with_130_and_its_finished_frames(small_take, tmp_path, number):
+    words = ["fit", str(small_take), "--out", str(tmp_path)]
+    process = subprocess.Popen(
+        [sys.executable, "-c", PAUSING, *words], stderr=subprocess.PIPE, text=True
+    )
+    assert process.stderr is not None
+    for line in process.stderr:
+        if line.startswith("fit 2/4"):
+            break
+    process.send_signal(number)
+    rest = process.stderr.read()
+    assert process.wait(30) == 130, rest
+    np.testing.assert_array_equal(read_motion(tmp_path / "motion.npz").frames, [0, 1])
+    assert "the 2 finished frames are kept" in rest and "interrupted" in rest

@@ -1,0 +1,131 @@
+"""The whole way from a take to its files, on a small one."""
+
+import json
+from dataclasses import replace
+
+import cv2
+import numpy as np
+import pytest
+from silhouette_mocap.core import pipeline
+from silhouette_mocap.core.body.kinematics import points
+from silhouette_mocap.core.errors import MocapError
+from silhouette_mocap.core.motion.motion import read_motion
+from silhouette_mocap.core.pipeline import FitRequest, check_formats, export, fit, initial_frames
+from silhouette_mocap.core.progress import Silence
+from silhouette_mocap.core.take import InitialPose, read_take
+
+
+class Notebook(Silence):
+    """Progress that remembers."""
+
+    def __init__(self):
+        self.notes, self.frames = [], []
+
+    def note(self, text):
+        self.notes.append(text)
+
+    def advance(self, frame, seconds=None, iou=None):
+        self.frames.append(frame)
+
+
+@pytest.fixture(scope="module")
+def fitted(small_take, tmp_path_factory):
+    out = tmp_path_factory.mktemp("out")
+    return fit(read_take(small_take), FitRequest(out), Silence()), out
+
+
+def test_the_truth_is_found_within_a_pixel(fitted):
+    result, _ = fitted
+    # 4 m away with a focal length of 137 px, one pixel is 29 mm
+    assert result.report["error_mm"]["absolute"]["mean"] < 29
+    assert result.report["iou"] > 0.95
+    assert result.report["lost_frames"] == []
+
+
+def test_all_files_are_written_and_agree(fitted):
+    result, out = fitted
+    assert sorted(path.name for path in out.iterdir()) == sorted(p.name for p in result.files)
+    motion = read_motion(out / "motion.npz")
+    np.testing.assert_array_equal(motion.frames, [0, 1, 2, 3])
+    body = pipeline.read_body(out / "body.npz")
+    np.testing.assert_allclose(points(body, motion.pose), motion.points, atol=1e-6)
+    report = json.loads((out / "report.json").read_text("utf-8"))
+    assert len(report["seconds_per_frame"]) == len(report["evaluations_per_frame"]) == 4
+    assert report["cameras"]["cam_01"]["working_size"] == [160, 120]
+    video = cv2.VideoCapture(str(out / "overlay.mp4"))
+    assert sum(video.read()[0] for _ in range(10)) == 4
+
+
+def test_frames_before_the_initial_pose_are_tracked_backwards(quick_start, small_take, tmp_path):
+    take = replace(read_take(small_take), initial_pose=InitialPose((1, 1), "A"))
+    progress = Notebook()
+    result = fit(take, FitRequest(tmp_path, frames=(0, 2)), progress)
+    assert progress.frames == [1, 2, 0]
+    np.testing.assert_array_equal(result.motion.frames, [0, 1, 2])
+    assert result.report["error_mm"]["absolute"]["max"] < 100
+
+
+def test_an_interrupted_fit_keeps_the_finished_frames(
+    quick_start, small_take, tmp_path, monkeypatch
+):
+    track = pipeline.track
+
+    def interrupted(tracker, pose, frames):
+        for number, found in enumerate(track(tracker, pose, frames)):
+            if number == 2:
+                raise KeyboardInterrupt
+            yield found
+
+    monkeypatch.setattr(pipeline, "track", interrupted)
+    progress = Notebook()
+    with pytest.raises(KeyboardInterrupt):
+        fit(read_take(small_take), FitRequest(tmp_path), progress)
+    np.testing.assert_array_equal(read_motion(tmp_path / "motion.npz").frames, [0, 1])
+    assert progress.notes[-1] == f"the 2 finished frames are kept in {tmp_path / 'motion.npz'}"
+
+
+@pytest.mark.parametrize(
+    ("shown", "frames", "used"),
+    [
+        ((0, 7), (0, 74), (0, 1, 2, 3, 4, 5, 6, 7)),
+        ((0, 20), (5, 74), (5, 7, 9, 11, 14, 16, 18, 20)),
+        ((3, 3), (0, 74), (3,)),
+        (None, (6, 74), (6,)),
+    ],
+)
+def test_the_initial_frames_are_those_of_the_take_that_are_fitted(small_take, shown, frames, used):
+    take = replace(read_take(small_take), initial_pose=InitialPose(shown))
+    assert initial_frames(take, frames) == used
+
+
+def test_frames_without_the_initial_pose_are_refused(small_take):
+    take = replace(read_take(small_take), initial_pose=InitialPose((0, 1)))
+    with pytest.raises(MocapError, match="in frames 0 to 1, outside 2 to 3"):
+        initial_frames(take, (2, 3))
+
+
+def test_what_needs_blender_is_refused_without_it():
+    with pytest.raises(MocapError, match=r"fbx, bvh.*pip install silhouette-mocap\[blender\]"):
+        check_formats(("fbx", "trc", "bvh"), None)
+    check_formats(("trc",), None)
+
+
+def test_trc_needs_no_blender(fitted, small_take):
+    _, out = fitted
+    (path,) = export(read_take(small_take), out, ("trc",), None)
+    assert path == out / "small.trc" and path.read_text("utf-8").startswith("PathFileType")
+    path.unlink()
+
+
+def test_the_exporter_gets_the_fit_and_the_footage(fitted, small_take):
+    _, out = fitted
+    asked = []
+
+    def exporter(request):
+        asked.append(request)
+        return ()
+
+    export(read_take(small_take), out, ("blend",), exporter)
+    (request,) = asked
+    assert request.name == "small" and request.folder == out and len(request.cameras) == 5
+    assert request.footage["cam_02"].endswith("masks/cam_02/{frame:06d}.png")
