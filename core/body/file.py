@@ -69,7 +69,7 @@ def read_body(path: Path) -> Body:
     try:
         with np.load(path, allow_pickle=False) as data:
             stored = {name: data[name] for name in data.files}
-    except (OSError, ValueError, EOFError, AttributeError, BadZipFile) as error:
+    except (OSError, ValueError, EOFError, TypeError, BadZipFile) as error:
         raise MocapError("cannot be read as body.npz", remedy, file=path) from error
     if "version" not in stored or "dof_names" not in stored:
         raise MocapError("is no body file", remedy, file=path)

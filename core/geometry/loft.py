@@ -16,6 +16,8 @@ from .arrays import frozen_array
 
 BODY_SAMPLES = 49
 CAP_SAMPLES = 10
+TIE_DIGITS = 9
+"""Symmetric shapes have ties; rounding lets every processor break them alike."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,9 +68,26 @@ class Profile:
         return np.r_[start[::-1], body, end], np.concatenate([caps[0][::-1], radii, caps[1]])
 
 
+@dataclass(frozen=True, eq=False)
+class Axis:
+    """Where a profile stands.
+
+    Attributes:
+        start: (3,) station 0.
+        end: (3,) station 1.
+        front: (3,) any vector with the front's direction; it is made perpendicular to the axis.
+            Outer is front x axis: for a bone that hangs down and a front at -Y it is +X, the left.
+    """
+
+    start: np.ndarray
+    end: np.ndarray
+    front: np.ndarray
+
+
 def chosen_samples(stations: np.ndarray, radii: np.ndarray, count: int) -> np.ndarray:
     """(count,) rising indices of samples between which straight interpolation serves best.
 
+    Of ``stations`` (M,) and ``radii`` (M, 4), as `Profile.sampled` gives them.
     The two ends are always taken; then, one by one, the gap with the largest area between outline
     and chord is split where they are farthest apart (after Douglas and Peucker 1973, who split by
     distance alone and so spend their samples on the blunt ends, which joints hide).
@@ -86,8 +105,9 @@ def _split(stations: np.ndarray, radii: np.ndarray, start: int, end: int) -> tup
         return -1.0, start
     s, r = stations[start : end + 1], radii[start : end + 1]
     share = (s - s[0])[:, None] / (s[-1] - s[0])
-    gaps = np.abs(r - r[0] - share * (r[-1] - r[0])).sum(axis=1)
-    return float(((gaps[1:] + gaps[:-1]) * np.diff(s)).sum() / 2), start + int(np.argmax(gaps))
+    gaps = np.abs(r - r[0] - share * (r[-1] - r[0])).sum(axis=1).round(TIE_DIGITS)
+    area = ((gaps[1:] + gaps[:-1]) * np.diff(s)).sum() / 2
+    return round(float(area), TIE_DIGITS), start + int(np.argmax(gaps))
 
 
 def fitted_sections(stations: np.ndarray, radii: np.ndarray, picked: np.ndarray) -> np.ndarray:
@@ -119,35 +139,32 @@ def rings(radii: np.ndarray, exponent: float, sides: int) -> np.ndarray:
 
 
 def lofted(
-    profile: Profile, start: np.ndarray, end: np.ndarray, front: np.ndarray, detail: tuple[int, int]
+    profile: Profile, axis: Axis, sides: int, picked: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The closed mesh of ``profile`` along the axis from ``start`` to ``end``.
+    """The closed mesh of ``profile`` along ``axis``.
 
     Args:
         profile: the cross-sections.
-        start: (3,) station 0.
-        end: (3,) station 1.
-        front: (3,) any vector with the front's direction; made perpendicular to the axis. Outer is
-            front x axis: for a bone that hangs down and a front at -Y it is +X, the left.
-        detail: (sides, rings) of the mesh, without the two poles.
+        axis: where they stand.
+        sides: points of a ring.
+        picked: (R + 2,) indices of the profile's samples that become poles and rings, as
+            `chosen_samples` gives them. Meshes that are to deform smoothly with their profile
+            need the same indices.
 
     Returns:
-        vertices (2 + sides * rings, 3) and triangles (2 * sides * rings, 3), oriented outwards.
+        vertices (2 + sides * R, 3) and triangles (2 * sides * R, 3), oriented outwards.
     """
-    sides, count = detail
     stations, radii = profile.sampled()
-    axis = end - start
-    along = axis / np.linalg.norm(axis)
-    front = front - (front @ along) * along
+    along = axis.end - axis.start
+    front = axis.front - (axis.front @ along) / (along @ along) * along
     front = front / np.linalg.norm(front)
-    outer = np.cross(front, along)
-    picked = chosen_samples(stations, radii, count + 2)
-    centres = start + stations[picked, None] * axis
+    outer = np.cross(front, along) / np.linalg.norm(along)
+    centres = axis.start + stations[picked, None] * along
     fitted = fitted_sections(stations, radii, picked)
     sections = rings(fitted[1:-1], profile.exponent, sides)
     points = centres[1:-1, None] + sections[..., :1] * outer + sections[..., 1:] * front
     vertices = np.concatenate([centres[:1], points.reshape(-1, 3), centres[-1:]])
-    return vertices, tube_triangles(sides, count)
+    return vertices, tube_triangles(sides, len(picked) - 2)
 
 
 def tube_triangles(sides: int, count: int) -> np.ndarray:

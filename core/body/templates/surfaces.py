@@ -1,12 +1,14 @@
 """Which surface pieces there are, and how they become the meshes of the segments."""
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
-from ...geometry.loft import lofted
+from ...geometry.loft import Axis, chosen_samples, lofted
 from ..body import Surface
 from .landmarks import FORWARD, UP, landmarks
+from .profiles import default_profiles
 from .proportions import Proportions
 
 
@@ -88,6 +90,12 @@ def _piece(
     """Vertices in rest-pose world metres and triangles of one piece, left or central."""
     loft = LOFTS[piece]
     sides, rings = loft.detail
-    detail = 2 * round(sides * level.sides / 2), round(rings * level.rings)
-    start, end = places[loft.start], places[loft.end]
-    return lofted(proportions.profiles[piece], start, end, loft.front, detail)
+    axis = Axis(places[loft.start], places[loft.end], loft.front)
+    picked = _picked(piece, round(rings * level.rings))
+    return lofted(proportions.profiles[piece], axis, 2 * round(sides * level.sides / 2), picked)
+
+
+@cache
+def _picked(piece: str, rings: int) -> np.ndarray:
+    """Where the rings stand: chosen for the average adult, so that shapes change smoothly."""
+    return chosen_samples(*default_profiles()[piece].sampled(), rings + 2)

@@ -1,5 +1,4 @@
 import pytest
-
 from silhouette_mocap.core.body.templates import TEMPLATES, template
 
 

@@ -1,6 +1,5 @@
 import numpy as np
 import pytest
-
 from silhouette_mocap.core.body.body import POINT_NAMES, Body, DofKind, Dofs, Surface
 from silhouette_mocap.core.body.kinematics import (
     clamped,

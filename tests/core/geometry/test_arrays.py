@@ -1,6 +1,5 @@
 import numpy as np
 import pytest
-
 from silhouette_mocap.core.geometry.arrays import check_indices, frozen_array
 
 
