@@ -14,7 +14,7 @@ part (4.2).
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -43,6 +43,7 @@ class HierarchicalSettings:
         grid_steps: points per DOF of the limbs' grid.
         grid_half_width: rad to either side of the centre.
         search_prediction: whether the grid is laid around the predicted pose too.
+        fine_torso: whether the torso goes on at full resolution from the second round.
         rounds: most repetitions of steps 1 to 3.
         sweeps: most passes of a downhill search over its directions.
         prior_share: energy of one standard deviation from the rest pose, as a share of the
@@ -52,6 +53,7 @@ class HierarchicalSettings:
     grid_steps: int = 5
     grid_half_width: float = np.radians(20)
     search_prediction: bool = True
+    fine_torso: bool = True
     rounds: int = 5
     sweeps: int = 3
     prior_share: float = 1e-3
@@ -59,8 +61,10 @@ class HierarchicalSettings:
 
 ROBUST = HierarchicalSettings()
 FAST_MOTION = HierarchicalSettings(grid_steps=7, grid_half_width=np.radians(45))
-FAITHFUL_SLOW = HierarchicalSettings(3, np.radians(12), search_prediction=False, prior_share=0.0)
-FAITHFUL_FAST = HierarchicalSettings(4, np.radians(35), search_prediction=False, prior_share=0.0)
+FAITHFUL_SLOW = HierarchicalSettings(
+    3, np.radians(12), search_prediction=False, fine_torso=False, prior_share=0.0
+)
+FAITHFUL_FAST = replace(FAITHFUL_SLOW, grid_steps=4, grid_half_width=np.radians(35))
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,7 +130,7 @@ class _FrameSearch:
         for number in range(self.tracker.settings.rounds):
             before, energy_before = self.pose.copy(), self.energy
             for part in self.tracker.body.parts:
-                self._search(part, with_grid=number == 0)
+                self._search(part, number)
             self.energy = float(self._whole_energies(self.pose[None])[0])
             if self.energy > energy_before:
                 self.pose, self.energy = before, energy_before
@@ -134,12 +138,13 @@ class _FrameSearch:
                 break
         return PoseFit(self.pose, self.energy, self.evaluations, self.windows_left)
 
-    def _search(self, part: Part, with_grid: bool) -> None:
+    def _search(self, part: Part, number: int) -> None:
         settings = self.tracker.settings
         windows = self._windows(part)
-        energy = self._part_energy(part, windows)
+        coarse = part.role == "torso" and not (settings.fine_torso and number > 0)
+        energy = self._part_energy(part, windows, coarse)
         dofs = list(part.dofs)
-        if with_grid and part.grid:
+        if number == 0 and part.grid:
             self._search_grid(part, energy)
         steps = first_steps(energy.evaluator, self.pose, part, tip_px=2.0)
         found = downhill(energy, self.pose[dofs], steps, settings.sweeps, tolerance=2e-3)
@@ -169,18 +174,16 @@ class _FrameSearch:
         side = _WINDOW_SIDES[part.role]
         return part_windows(self.tracker.evaluator, self.pose, part, side)
 
-    def _part_energy(self, part: Part, windows: np.ndarray | None) -> PartEnergy:
+    def _part_energy(self, part: Part, windows: np.ndarray | None, coarse: bool) -> PartEnergy:
         tracker = self.tracker
-        if part.role == "torso":
+        if coarse:
             evaluator, weights = tracker.half_evaluator, self.half_weights
         else:
             evaluator = tracker.evaluator
             weights = evaluator.masked(self.weights, self.pose, part.segments, windows)
         torso = tracker.torso_volume if part.role == "limb" else None
         limits = tracker.limits[part.name]
-        return PartEnergy(
-            evaluator, weights, self.pose.copy(), part, limits, torso, self.prior_px
-        )
+        return PartEnergy(evaluator, weights, self.pose.copy(), part, limits, torso, self.prior_px)
 
     def _whole_energies(self, poses: np.ndarray) -> np.ndarray:
         self.evaluations += len(poses)

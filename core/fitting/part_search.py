@@ -62,7 +62,8 @@ class PartEnergy:
 def first_steps(evaluator: Evaluator, pose: np.ndarray, part: Part, tip_px: float) -> np.ndarray:
     """(n,) change of each of the part's DOFs that moves the part's tip by ``tip_px``.
 
-    The tip is whichever joint or bone end of the part moves most; pixels are those of the mean view.
+    The tip is whichever joint or bone end of the part moves most; pixels are those of the mean
+    view.
     """
     body, epsilon = evaluator.body, 1e-3
     dofs = list(part.dofs)

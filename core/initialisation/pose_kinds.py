@@ -8,7 +8,7 @@ from ..body.kinematics import points
 from ..errors import MocapError
 
 POSE_KINDS = {"A": (45.0, None), "T": (90.0, None), "elbows": (80.0, 0.0)}
-"""Kind -> degrees between the hanging and the actual direction of upper arm and forearm; None: as the upper arm."""
+"""Kind -> degrees that upper arm and forearm are out from hanging; None: forearm as upper arm."""
 
 
 def pose_of_kind(body: Body, kind: str) -> np.ndarray:

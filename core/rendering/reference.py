@@ -185,6 +185,10 @@ class ReferenceEvaluator:
                     boxes[n, v] = -(-np.concatenate([px.min(axis=0), px.max(axis=0)]) // 256)
         return boxes
 
+    def transforms(self, poses: np.ndarray) -> np.ndarray:
+        """(N, J, 3, 4) world_from_joint of poses (N, D), metres."""
+        return joint_transforms(self.body, poses)
+
     def snapped(self, pose: np.ndarray) -> np.ndarray:
         """(V, n, 2) int32 vertices in 1/256 px; the lowest int32 where one is clipped away."""
         count = len(self.body.surfaces[self.level].vertices)

@@ -1,0 +1,50 @@
+from dataclasses import replace
+
+import numpy as np
+from silhouette_mocap.core.fitting.scores import LIMB_NAMES, frame_scores, limb_segments
+from synthetic import dof_values, evaluator, filmed, small_body, small_studio
+
+
+def test_the_true_pose_scores_perfectly():
+    body, cameras = small_body("performer"), small_studio()
+    pose = dof_values(body, left_elbow_flexion=0.5)
+    scores = frame_scores(evaluator(body, cameras), pose, filmed(body, cameras, pose))
+    assert not scores.xor_px.any()
+    assert (scores.iou == 1).all()
+    assert scores.contour_px == 0
+    assert not scores.limb_residual.any()
+    assert (scores.confidence > 0.99).all()
+    assert not scores.lost
+
+
+def test_a_lost_arm_shows_in_its_own_residual_and_confidence():
+    body, cameras = small_body("performer"), small_studio()
+    truth = dof_values(body, left_shoulder_abduction=1.2)
+    scores = frame_scores(evaluator(body, cameras), body.rest_pose, filmed(body, cameras, truth))
+    assert int(np.argmax(scores.limb_residual)) == LIMB_NAMES.index("left_arm")
+    assert scores.limb_residual[LIMB_NAMES.index("right_leg")] == 0
+    assert scores.confidence.argmin() in (4, 6)
+    assert scores.lost
+
+
+def test_xor_and_iou_are_counted_where_something_was_observed():
+    body, cameras = small_body("sixteen_segment"), small_studio(2)
+    pose = body.rest_pose
+    seen = filmed(body, cameras, pose)
+    left = np.zeros_like(seen[0].observed)
+    left[:, : left.shape[1] // 2] = True
+    cut = (replace(seen[0], foreground=seen[0].foreground & left, observed=left), seen[1])
+    scores = frame_scores(evaluator(body, cameras), pose, cut)
+    assert scores.xor_px.tolist() == [0, 0]
+    whole = (replace(cut[0], observed=np.ones_like(left)), seen[1])
+    scores = frame_scores(evaluator(body, cameras), pose, whole)
+    missing = np.count_nonzero(seen[0].foreground & ~left)
+    assert scores.xor_px[0] == missing
+    assert scores.iou[0] == 1 - missing / np.count_nonzero(seen[0].foreground)
+
+
+def test_every_segment_belongs_to_one_limb():
+    for name in ("performer", "sixteen_segment"):
+        body = small_body(name)
+        held = sorted(s for segments in limb_segments(body) for s in segments)
+        assert held == list(range(len(body.segment_names)))

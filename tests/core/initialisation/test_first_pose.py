@@ -1,0 +1,89 @@
+import numpy as np
+import pytest
+from silhouette_mocap.core.body.kinematics import points, rest_height
+from silhouette_mocap.core.errors import MocapError
+from silhouette_mocap.core.initialisation.first_pose import PoseRequest, initialised
+from silhouette_mocap.core.initialisation.pose_kinds import pose_of_kind
+from silhouette_mocap.core.initialisation.standing import body_centre, standing_height
+from silhouette_mocap.core.silhouettes.silhouette import Silhouette
+from synthetic import evaluator, filmed, point_errors, small_body, small_studio
+
+
+def standing(name, kind, scale, heading):
+    body = small_body(name, scale)
+    pose = pose_of_kind(body, kind)
+    pose[:4] = [0.25, -0.3, 0.0, heading]
+    return body, pose
+
+
+@pytest.mark.parametrize(
+    ("kind", "scale", "heading"), [("A", 0.93, 2.3), ("T", 1.05, -1.2), ("elbows", 1.0, 0.4)]
+)
+def test_position_heading_and_scale_are_found_from_silhouettes_alone(kind, scale, heading):
+    body, truth = standing("sixteen_segment", kind, scale, heading)
+    cameras = small_studio()
+    silhouettes = filmed(body, cameras, truth)
+    first = initialised(
+        small_body("sixteen_segment"), cameras, (silhouettes,), PoseRequest(kind), evaluator
+    )
+    # One px of 33 mm at the crown and one at the feet, of 1.75 m.
+    assert rest_height(first.body) == pytest.approx(rest_height(body), rel=0.02)
+    turn = (first.pose[3] - heading + np.pi) % (2 * np.pi) - np.pi
+    assert abs(turn) < np.radians(5)
+    found = points(first.body, first.pose[None])[0]
+    error = np.linalg.norm(found - points(body, truth[None])[0], axis=1)
+    assert error.mean() < 0.035
+    assert first.iou.min() > 0.85
+    assert "m tall" in first.notes[0]
+
+
+def test_a_given_height_is_kept():
+    body, truth = standing("sixteen_segment", "A", 1.0, 0.0)
+    cameras = small_studio(4)
+    request = PoseRequest("A", height_m=1.8)
+    first = initialised(body, cameras, (filmed(body, cameras, truth),), request, evaluator)
+    assert rest_height(first.body) == pytest.approx(1.8)
+
+
+@pytest.mark.parametrize("name", ["performer", "sixteen_segment"])
+def test_the_kinds_put_the_arms_where_they_say(name):
+    body = small_body(name)
+    for kind, elbow_drop, wrist_drop in (("A", 0.707, 0.707), ("T", 0.0, 0.0), ("elbows", 0.17, 1)):
+        shoulder, elbow, wrist = points(body, pose_of_kind(body, kind)[None])[0, [2, 4, 6]]
+        upper, fore = elbow - shoulder, wrist - elbow
+        assert -upper[2] / np.linalg.norm(upper) == pytest.approx(elbow_drop, abs=0.03)
+        assert -fore[2] / np.linalg.norm(fore) == pytest.approx(wrist_drop, abs=0.03)
+        mirrored = points(body, pose_of_kind(body, kind)[None])[0, 7] * [-1, 1, 1]
+        assert np.allclose(wrist, mirrored, atol=1e-3)
+
+
+def test_an_unknown_kind_names_the_known_ones():
+    with pytest.raises(MocapError, match="A, T, elbows"):
+        pose_of_kind(small_body("performer"), "Y")
+
+
+def test_centre_and_height_of_a_standing_body():
+    body, truth = standing("performer", "A", 1.0, 1.0)
+    cameras = small_studio()
+    silhouettes = filmed(body, cameras, truth)
+    centre = body_centre(cameras, silhouettes)
+    assert np.abs(centre[:2] - truth[:2]).max() < 0.05
+    # The crown is as wide as a skull: tilted views see its near or far rim.
+    assert standing_height(cameras, silhouettes, centre, 0.0) == pytest.approx(
+        rest_height(body), abs=0.06
+    )
+
+
+def test_silhouettes_that_show_nobody_are_refused():
+    cameras = small_studio(2)
+    nothing = np.zeros((120, 160), bool)
+    with pytest.raises(MocapError, match="0 of 2 views show the performer"):
+        body_centre(cameras, (Silhouette(nothing, ~nothing),) * 2)
+
+
+def test_point_errors_name_what_moved():
+    body = small_body("performer")
+    pose = body.rest_pose.copy()
+    pose[body.dofs.names.index("left_elbow_flexion")] = 0.5
+    errors = point_errors(body, pose, body.rest_pose)
+    assert [name for name, error in errors.items() if error > 1e-6] == ["left_wrist"]
