@@ -24,14 +24,14 @@ env: .venv/.installed .venv-3.13/.installed ## Both Python environments, with Bl
 demo: .venv/.installed ## Fit the sample walk, from masks and from silhouette videos, into out/
 	@$(MOCAP) fit sample_scenes/walk/take.toml --out out/walk
 	@$(MOCAP) fit sample_scenes/walk/take_videos.toml --out out/walk_videos
-	@.venv/bin/python sample_scenes/table.py out/walk out/walk_videos
+	@.venv/bin/python .ci/results.py out/walk out/walk_videos
 
 demo-real: .venv/.installed ## Fetch the real four-camera recording and fit it into out/balance
 	@.venv/bin/python sample_scenes/balance/fetch.py
 	@$(MOCAP) plate sample_scenes/balance/take.toml --recipes sample_scenes/balance/plates.toml
 	@$(MOCAP) masks sample_scenes/balance/take.toml --out out/balance/masks
 	@$(MOCAP) fit sample_scenes/balance/take.toml --out out/balance
-	@.venv/bin/python sample_scenes/table.py out/balance
+	@.venv/bin/python .ci/results.py out/balance
 
 test: env lint test-core test-addon ## Linters and all tests, on Python 3.11 and 3.13 and both Blenders
 

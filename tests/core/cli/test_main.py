@@ -161,7 +161,8 @@ def test_output_that_nobody_reads_any_more_is_no_error(small_take):
     os.close(reader)
     finished = subprocess.run(
         [sys.executable, "-c", program, "info", str(small_take)],
-        stdout=writer, stderr=subprocess.PIPE, text=True, env={**os.environ, "PYTHONUNBUFFERED": "1"},
+        stdout=writer, stderr=subprocess.PIPE, text=True,
+        env={**os.environ, "PYTHONUNBUFFERED": "1"},
     )  # fmt: skip
     os.close(writer)
     assert (finished.returncode, finished.stderr) == (0, "")

@@ -1,0 +1,34 @@
+"""Progress on a terminal and elsewhere."""
+
+import io
+
+from silhouette_mocap.core.cli.console import ProgressBar
+
+
+class Terminal(io.StringIO):
+    def isatty(self):
+        return True
+
+
+def told(stream) -> str:
+    bar = ProgressBar(stream)
+    bar.begin("fit", 2)
+    bar.note("look out")
+    bar.advance(10, 1.25, 0.8766)
+    bar.advance(11, 1.5, 0.9)
+    return stream.getvalue()
+
+
+def test_elsewhere_every_frame_is_a_plain_line():
+    assert told(io.StringIO()) == (
+        "note: look out\n"
+        "fit 1/2  frame 10  1.25 s  IoU 0.877\n"
+        "fit 2/2  frame 11  1.50 s  IoU 0.900\n"
+    )
+
+
+def test_on_a_terminal_one_line_grows_and_notes_stand_above_it():
+    shown = told(Terminal())
+    assert shown.count("\n") == 2 and shown.endswith("IoU 0.900\n")
+    assert "note: look out\n" in shown and "############............" in shown
+    assert "s/frame" in shown and "\r" in shown
