@@ -7,7 +7,8 @@ alone carries positions.
 """
 
 import contextlib
-import io
+import os
+import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -91,7 +92,8 @@ def _write(
         if suffix == "trc":
             write_trc(path, request.motion)
             return path
-        _WRITERS[suffix](partial, scene, performance)
+        with _quiet():
+            _WRITERS[suffix](partial, scene, performance)
         partial.replace(path)
     except (OSError, RuntimeError) as error:
         reason = str(error).strip().splitlines()[-1]
@@ -99,6 +101,23 @@ def _write(
     finally:
         partial.unlink(missing_ok=True)
     return path
+
+
+@contextlib.contextmanager
+def _quiet() -> Iterator[None]:
+    """Keeps what Blender tells about its files off the output, which is read by programs."""
+    if not bpy.app.background:
+        yield
+        return
+    sys.stdout.flush()
+    kept = os.dup(1)
+    try:
+        with open(os.devnull, "w") as nothing, contextlib.redirect_stdout(nothing):
+            os.dup2(nothing.fileno(), 1)
+            yield
+    finally:
+        os.dup2(kept, 1)
+        os.close(kept)
 
 
 def _write_blend(path: Path, scene: bpy.types.Scene, performance: Performance) -> None:
@@ -127,18 +146,15 @@ def _write_bvh(path: Path, scene: bpy.types.Scene, performance: Performance) -> 
 def _run_exporter(
     group: str, name: str, scene: bpy.types.Scene, performance: Performance, **settings
 ) -> None:
-    """Runs ``bpy.ops.group.name`` on the performer in ``scene``, what it prints left out."""
+    """Runs ``bpy.ops.group.name`` on the performer in ``scene``."""
     if not hasattr(bpy.types, f"{group.upper()}_OT_{name}"):
         raise MocapError(
             f"Blender's {name.upper()} exporter is switched off",
             "switch it on under Preferences, Add-ons",
         )
     active = performance.armature
-    with (
-        bpy.context.temp_override(
-            scene=scene, view_layer=scene.view_layers[0], active_object=active, object=active
-        ),
-        contextlib.redirect_stdout(io.StringIO()),
+    with bpy.context.temp_override(
+        scene=scene, view_layer=scene.view_layers[0], active_object=active, object=active
     ):
         getattr(getattr(bpy.ops, group), name)(**settings)
 

@@ -14,12 +14,12 @@ if "bpy" not in sys.modules:
     _resources = tempfile.TemporaryDirectory(prefix="silhouette_mocap_")
     os.environ["BLENDER_USER_RESOURCES"] = _resources.name  # read when bpy is first imported
 
-import bpy  # noqa: E402
-import numpy as np  # noqa: E402
-import pytest  # noqa: E402
+import bpy
+import numpy as np
+import pytest
 
 # isort: split
-import addon_utils  # noqa: E402  found only once bpy is imported
+import addon_utils
 
 EXTENSION = "bl_ext.user_default.silhouette_mocap"
 _CHECKOUT = Path(__file__).resolve().parents[2]
