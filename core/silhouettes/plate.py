@@ -98,7 +98,7 @@ def read_plate(pattern: str | Path, camera: str) -> Plate:
 
 def write_plate(path: Path, plate: Plate) -> None:
     """Writes the mean to ``path`` (.png) and the spread beside it, as ``read_plate`` finds them."""
-    write_picture(path, np.round(plate.mean).astype(np.uint8))
+    write_picture(path, np.clip(np.round(plate.mean), 0, 255).astype(np.uint8))
     spread = np.clip(np.round(plate.spread / _SPREAD_UNIT), 0, 65535)
     write_picture(_spread_path(path), spread.astype(np.uint16))
 

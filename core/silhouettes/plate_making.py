@@ -7,7 +7,7 @@ where a median bears him for half). Two helps where he stays longer than that:
 * inside ``box``, a still of the same view with him elsewhere says what the background looks like:
   it is brought onto the footage (``registration``) and its exposure is matched (``drift``). Frames
   that agree with it give the plate, as they have the footage's own sharpness; where none agrees,
-  the still itself does; where the still shows him, inside ``still_box``, it is not asked;
+  the still itself does; where the still shows him, inside ``still_boxes``, it is not asked;
 * inside a patch, only the frames are looked at in which he has left it.
 
 The spread is the deviation of the frames that agree. Where the still was taken over, half a pixel
@@ -48,11 +48,9 @@ def plate_from(footage: Footage, frames: tuple[int, int], recipe: PlateRecipe) -
     plate = _lasting(pictures)
     if recipe.still is not None:
         still = colour_picture(read_picture(recipe.still, footage.camera))
-        reference = np.round(plate.mean).astype(np.uint8)
+        reference = np.clip(np.round(plate.mean), 0, 255).astype(np.uint8)
         still = registered(still, reference, recipe.still).astype(np.float32)
-        trusted = _inside(recipe.box, still.shape[:2], everywhere=True)
-        trusted &= ~_inside(recipe.still_box, still.shape[:2], everywhere=False)
-        plate = _with_still(plate, pictures, still, trusted)
+        plate = _with_still(plate, pictures, still, _trusted(recipe, still.shape[:2]))
     for patch in recipe.patches:
         plate = _with_patch(plate, footage, patch)
     return plate
@@ -127,14 +125,14 @@ def _with_still(
     return Plate(mean, spread)
 
 
-def _inside(box: Box | None, shape: tuple[int, int], everywhere: bool) -> np.ndarray:
-    """(H, W) bool, True inside ``box``; without a box, ``everywhere``."""
-    if box is None:
-        return np.full(shape, everywhere)
-    left, top, right, bottom = box
-    inside = np.zeros(shape, bool)
-    inside[top:bottom, left:right] = True
-    return inside
+def _trusted(recipe: PlateRecipe, shape: tuple[int, int]) -> np.ndarray:
+    """(H, W) bool, True where the still is needed and shows the empty scene."""
+    trusted = np.zeros(shape, bool)
+    left, top, right, bottom = recipe.box or (0, 0, *shape[::-1])
+    trusted[top:bottom, left:right] = True
+    for left, top, right, bottom in recipe.still_boxes:
+        trusted[top:bottom, left:right] = False
+    return trusted
 
 
 def _half_pixel_gradient(picture: np.ndarray) -> np.ndarray:

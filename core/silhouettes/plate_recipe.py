@@ -7,7 +7,7 @@ A TOML file with a table per camera, whose paths are relative to it:
     [cam01]
     still = "stills/cam01.png"             # the same view with the performer elsewhere
     box = [358, 303, 923, 1295]            # where the still is needed; left, top, right, bottom px
-    still_box = [110, 248, 361, 992]       # where the still shows the performer
+    still_boxes = [[110, 248, 361, 992]]   # where the still shows the performer
     patches = [{ box = [600, 400, 860, 570], frames = [82, 86] }]   # frames that show it empty
 """
 
@@ -40,13 +40,13 @@ class PlateRecipe:
     Attributes:
         still: a picture of the same view with the performer elsewhere, or None.
         box: where the still is needed, in footage px; None for everywhere.
-        still_box: where the still shows the performer, in footage px; None for nowhere.
+        still_boxes: where the still shows the performer, in footage px.
         patches: parts of the picture that some frames show empty.
     """
 
     still: Path | None = None
     box: Box | None = None
-    still_box: Box | None = None
+    still_boxes: tuple[Box, ...] = ()
     patches: tuple[Patch, ...] = ()
 
 
@@ -69,11 +69,13 @@ def read_plate_recipes(path: Path) -> dict[str, PlateRecipe]:
 
 def _recipe(table, path: Path, camera: str) -> PlateRecipe:
     _expect(isinstance(table, dict), "each camera has a table of its own", path, camera)
-    known = ("still", "box", "still_box", "patches")
+    known = ("still", "box", "still_boxes", "patches")
     for key in table:
         _expect(key in known, f'unknown key "{key}"; known are {", ".join(known)}', path, camera)
     still = table.get("still")
     _expect(still is None or isinstance(still, str), "still is a path in quotes", path, camera)
+    still_boxes = table.get("still_boxes", [])
+    _expect(isinstance(still_boxes, list), "still_boxes is a list of boxes", path, camera)
     patches = table.get("patches", [])
     _expect(
         isinstance(patches, list)
@@ -84,8 +86,8 @@ def _recipe(table, path: Path, camera: str) -> PlateRecipe:
     )
     return PlateRecipe(
         still=None if still is None else path.parent / still,
-        box=_box(table.get("box"), path, camera),
-        still_box=_box(table.get("still_box"), path, camera),
+        box=None if "box" not in table else _box(table["box"], path, camera),
+        still_boxes=tuple(_box(box, path, camera) for box in still_boxes),
         patches=tuple(_patch(patch, path, camera) for patch in patches),
     )
 
@@ -101,9 +103,7 @@ def _patch(table: dict, path: Path, camera: str) -> Patch:
     return Patch(_box(table["box"], path, camera), tuple(frames))
 
 
-def _box(value, path: Path, camera: str) -> Box | None:
-    if value is None:
-        return None
+def _box(value, path: Path, camera: str) -> Box:
     _expect(
         _are_numbers(value, 4) and 0 <= value[0] < value[2] and 0 <= value[1] < value[3],
         "a box is [left, top, right, bottom] in px",

@@ -26,6 +26,7 @@ _SMOOTHING_PX = 1.0
 _SMOOTHING_DEVIATIONS = 12.0
 _LEAST_NOISE = 0.5
 _SURE = 4.0
+_NOISE_DEVIATIONS = 2.0
 _MARGIN_PX = 8
 
 
@@ -46,9 +47,9 @@ class StatisticsSettings:
 
     deviations: float = 8.0
     hue_deg: float = 8.0
-    angle_deg: float = 1.5
+    angle_deg: float = 1.0
     saturation: float = 0.25
-    darkest: float = 0.7
+    darkest: float = 0.65
     coherence: float = 2.0
     drift: bool = True
 
@@ -70,15 +71,15 @@ class Statistics:
         mask = np.zeros(distance.shape, bool)
         area = _around(distance > self.settings.deviations)
         if area is not None:
-            mask[area] = self._labels(distance[area], colours[area], background.mean[area])
+            mask[area] = self._labels(
+                distance[area], colours[area], background.mean[area], spread[area]
+            )
         return mask
 
-    def _labels(
-        self, distance: np.ndarray, colours: np.ndarray, background: np.ndarray
-    ) -> np.ndarray:
+    def _labels(self, distance, colours, background, spread) -> np.ndarray:
         settings = self.settings
         change = distance - settings.deviations
-        evidence = np.minimum(change, against_shadow(colours, background, settings))
+        evidence = np.minimum(change, against_shadow(colours, background, spread, settings))
         evidence = np.clip(evidence, -_SURE, _SURE).astype(np.float32)
         return coherent(evidence, colours, background, Coherence(settings.coherence))
 
@@ -109,20 +110,24 @@ def _around(mask: np.ndarray) -> tuple[slice, slice] | None:
 
 
 def against_shadow(
-    colours: np.ndarray, background: np.ndarray, settings: StatisticsSettings
+    colours: np.ndarray, background: np.ndarray, spread: np.ndarray, settings: StatisticsSettings
 ) -> np.ndarray:
-    """(…) evidence that ``colours`` are not the shadowed ``background``, both (…, 3) BGR.
+    """(…) evidence that ``colours`` are not the shadowed ``background``, all (…, 3) BGR.
 
     Negative inside the limits of a shadow, 0 at a limit, infinite for what is not darker at all.
-    An angle of twice the limit, or a brightness of 0.1 below it, is ``_SURE``.
+    An angle of twice the limit, or a brightness of 0.1 below it, is ``_SURE``. The limits of the
+    angles are widened by the angle that ``_NOISE_DEVIATIONS`` of noise make.
     """
     brightness = _total(colours) / np.maximum(_total(background), 1)
     too_dark = (settings.darkest - brightness) * 10 * _SURE
-    nearly_grey = np.minimum(saturations(colours), saturations(background)) < settings.saturation
+    saturation = np.minimum(saturations(colours), saturations(background))
+    length = np.maximum(np.sqrt(_dot(colours, colours)), 1)
+    noise = _NOISE_DEVIATIONS * _total(spread) / 3 / length
     turned = np.where(
-        nearly_grey,
-        vector_angles(colours, background) / np.radians(settings.angle_deg),
-        hue_angles(colours, background) / np.radians(settings.hue_deg),
+        saturation < settings.saturation,
+        vector_angles(colours, background) / (np.radians(settings.angle_deg) + noise),
+        hue_angles(colours, background)
+        / (np.radians(settings.hue_deg) + noise / np.maximum(saturation, 0.05)),
     )
     against = np.maximum(too_dark, (turned - 1) * _SURE)
     return np.where(brightness < 1, against, np.inf)
