@@ -6,7 +6,6 @@ import cv2
 import numpy as np
 
 from ..body.body import POINT_NAMES, Body
-from ..cameras.camera import Camera
 from ..energy.evaluator import Evaluator
 from ..silhouettes.silhouette import Silhouette
 from .part_search import metres_per_pixel
@@ -47,21 +46,23 @@ def frame_scores(
     ).T
     with np.errstate(invalid="ignore", divide="ignore"):
         iou = np.where(union > 0, 1.0 - xor / union, np.nan)
-    limbs = [
-        _limb_distances(evaluator.silhouettes(pose, segments), rendered, silhouettes)
-        for segments in limb_segments(evaluator.body)
-    ]
-    distances = [_contour_distances(m, m, s) for m, s in zip(rendered, silhouettes, strict=True)]
-    residual = np.array([_mean(np.concatenate(views)) for views, _ in limbs])
-    lost = any(np.mean(shares) < _EXPLAINED_SHARE for _, shares in limbs if len(shares))
-    contours = np.concatenate(distances)
+    fields = [signed_distances(s.foreground) for s in silhouettes]
+
+    def distances_of(parts: tuple[np.ndarray, ...]) -> np.ndarray:
+        views = zip(parts, rendered, fields, silhouettes, strict=True)
+        seen = [(p, m, d, s.observed) for p, m, d, s in views if s.foreground.any()]
+        return np.concatenate([contour_distances(*view) for view in seen] or [np.zeros(0)])
+
+    limbs = [evaluator.silhouettes(pose, segments) for segments in limb_segments(evaluator.body)]
+    residual = np.array([_figure(np.mean, distances_of(parts)) for parts in limbs])
+    place = evaluator.transforms(pose[None])[0, 0, :, 3]
     return FrameScores(
         xor_px=xor,
         iou=iou,
-        contour_px=float(np.median(contours)) if len(contours) else np.nan,
+        contour_px=_figure(np.median, distances_of(rendered)),
         limb_residual=residual,
-        confidence=point_confidence(evaluator.body, evaluator.cameras, residual),
-        lost=bool(lost),
+        confidence=point_confidence(residual * metres_per_pixel(evaluator.cameras, place)),
+        lost=any(_is_unexplained(parts, silhouettes) for parts in limbs),
     )
 
 
@@ -73,18 +74,14 @@ def limb_segments(body: Body) -> tuple[tuple[int, ...], ...]:
     return (torso, *(limbs[name] for name in LIMB_NAMES[1:]))
 
 
-def point_confidence(
-    body: Body, cameras: tuple[Camera, ...], limb_residual: np.ndarray
-) -> np.ndarray:
+def point_confidence(limb_residual: np.ndarray) -> np.ndarray:
     """(14,) probability that each point is off by less than 50 mm, not calibrated on truth.
 
-    The mean contour distance of the point's limb, in metres, is taken as the spread of a
-    two-dimensional normal error.
+    The mean contour distance (5,) of the point's limb, in metres, is taken as the spread of a
+    two-dimensional normal error; a limb that no view shows has none.
     """
-    limb_of_point = [_limb_of(name) for name in POINT_NAMES]
-    pixel = metres_per_pixel(cameras, body.offsets[0])
-    spread = np.maximum(np.nan_to_num(limb_residual, nan=np.inf) * pixel, 1e-4)
-    return (1.0 - np.exp(-(0.05**2) / (2.0 * spread**2)))[limb_of_point]
+    spread = np.maximum(np.nan_to_num(limb_residual, nan=np.inf), 1e-4)
+    return (1.0 - np.exp(-(0.05**2) / (2.0 * spread**2)))[[_limb_of(n) for n in POINT_NAMES]]
 
 
 def _limb_of(point: str) -> int:
@@ -102,31 +99,42 @@ def _differences(silhouette: Silhouette, model: np.ndarray) -> tuple[int, int]:
     return np.count_nonzero(seen ^ drawn), np.count_nonzero(seen | drawn)
 
 
-def _contour(mask: np.ndarray) -> np.ndarray:
-    """(H, W) bool: px of ``mask`` with a neighbour outside it; the picture's edge is no contour."""
-    inner = cv2.erode(mask.astype(np.uint8), np.ones((3, 3), np.uint8)) > 0
-    return mask & ~inner
+def signed_distances(mask: np.ndarray) -> np.ndarray:
+    """(H, W) px from each pixel's centre to the mask's boundary, negative inside.
+
+    The boundary runs between pixels, so no centre is nearer than half a pixel.
+    """
+    inside = mask.astype(np.uint8)
+    depth = cv2.distanceTransform(inside, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
+    height = cv2.distanceTransform(1 - inside, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
+    return np.where(mask, 0.5 - depth, height - 0.5)
 
 
-def _contour_distances(part: np.ndarray, model: np.ndarray, silhouette: Silhouette) -> np.ndarray:
-    """(n,) px from the model's contour, as far as it belongs to ``part``, to the observed one."""
-    observed = _contour(silhouette.foreground)
-    if not observed.any():
-        return np.zeros(0)
-    distance = cv2.distanceTransform((~observed).astype(np.uint8), cv2.DIST_L2, 5)
-    return distance[_contour(model) & part & silhouette.observed]
+def contour_distances(
+    part: np.ndarray, model: np.ndarray, distance: np.ndarray, observed: np.ndarray
+) -> np.ndarray:
+    """(n,) px from the model's contour, as far as it belongs to ``part``, to the observed one.
+
+    ``distance`` holds the `signed_distances` of the observed silhouette. The model's contour runs between two neighbouring pixels, one inside and one outside; there the
+    distance is the mean of theirs. The picture's edge is no contour.
+    """
+    found = []
+    for one, other in (np.s_[:, :-1], np.s_[:, 1:]), (np.s_[:-1], np.s_[1:]):
+        crossing = (model[one] != model[other]) & (part[one] | part[other])
+        crossing &= observed[one] & observed[other]
+        found.append(np.abs(distance[one][crossing] + distance[other][crossing]) / 2)
+    return np.concatenate(found)
 
 
-def _limb_distances(limb, rendered, silhouettes) -> tuple[list[np.ndarray], list[bool]]:
-    """Contour distances per view, and whether the view explains most of the limb's px."""
-    distances, explained = [], []
-    for part, model, silhouette in zip(limb, rendered, silhouettes, strict=True):
-        distances.append(_contour_distances(part, model, silhouette))
+def _is_unexplained(limb: tuple[np.ndarray, ...], silhouettes: tuple[Silhouette, ...]) -> bool:
+    """Whether most of the limb's px are foreground in fewer than 60 % of the views showing it."""
+    explained = []
+    for part, silhouette in zip(limb, silhouettes, strict=True):
         drawn = part & silhouette.observed
         if drawn.any():
             explained.append(silhouette.foreground[drawn].mean() >= _EXPLAINED_SHARE)
-    return distances, explained
+    return bool(explained) and float(np.mean(explained)) < _EXPLAINED_SHARE
 
 
-def _mean(values: np.ndarray) -> float:
-    return float(values.mean()) if len(values) else np.nan
+def _figure(reduction, values: np.ndarray) -> float:
+    return float(reduction(values)) if len(values) else np.nan

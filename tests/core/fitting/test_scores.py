@@ -1,7 +1,13 @@
 from dataclasses import replace
 
 import numpy as np
-from silhouette_mocap.core.fitting.scores import LIMB_NAMES, frame_scores, limb_segments
+from silhouette_mocap.core.fitting.scores import (
+    LIMB_NAMES,
+    contour_distances,
+    frame_scores,
+    limb_segments,
+    signed_distances,
+)
 from synthetic import dof_values, evaluator, filmed, small_body, small_studio
 
 
@@ -48,3 +54,30 @@ def test_every_segment_belongs_to_one_limb():
         body = small_body(name)
         held = sorted(s for segments in limb_segments(body) for s in segments)
         assert held == list(range(len(body.segment_names)))
+
+
+def test_contour_distances_are_those_of_a_grown_square():
+    square = np.zeros((40, 40), bool)
+    square[10:30, 10:30] = True
+    distance, everywhere = signed_distances(square), np.ones_like(square)
+    assert not contour_distances(everywhere, square, distance, everywhere).any()
+    grown = np.zeros_like(square)
+    grown[8:32, 8:32] = True
+    distances = contour_distances(everywhere, grown, distance, everywhere)
+    assert len(distances) == 4 * 24
+    # Along the sides two px, nearer the diagonal at the corners.
+    assert np.median(distances) == 2
+    assert (distances <= np.hypot(2, 2)).all()
+    left = np.zeros_like(square)
+    left[:, :12] = True
+    assert len(contour_distances(left, grown, distance, everywhere)) == 24 + 2 * 4
+    assert len(contour_distances(everywhere, grown, distance, ~left)) == 24 + 2 * 20
+
+
+def test_a_view_that_saw_nothing_tells_nothing_of_contours():
+    body, cameras = small_body("sixteen_segment"), small_studio(2)
+    seen = filmed(body, cameras, body.rest_pose)
+    black = replace(seen[0], foreground=np.zeros_like(seen[0].foreground))
+    scores = frame_scores(evaluator(body, cameras), body.rest_pose, (black, seen[1]))
+    assert not scores.limb_residual.any()
+    assert scores.iou.tolist() == [0, 1]
