@@ -115,8 +115,9 @@ def contour_distances(
 ) -> np.ndarray:
     """(n,) px from the model's contour, as far as it belongs to ``part``, to the observed one.
 
-    ``distance`` holds the `signed_distances` of the observed silhouette. The model's contour runs between two neighbouring pixels, one inside and one outside; there the
-    distance is the mean of theirs. The picture's edge is no contour.
+    ``distance`` holds the `signed_distances` of the observed silhouette. The model's contour
+    runs between two neighbouring pixels, one inside and one outside; there the distance is the
+    mean of theirs. The picture's edge is no contour.
     """
     found = []
     for one, other in (np.s_[:, :-1], np.s_[:, 1:]), (np.s_[:-1], np.s_[1:]):
