@@ -8,7 +8,7 @@ observed silhouette, -1 inside and 0 where nothing was observed; C is the silhou
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, TypeVar
 
 import numpy as np
 
@@ -38,23 +38,26 @@ class Weights(Protocol):
         ...
 
 
-class Evaluator(Protocol):
+W = TypeVar("W", bound=Weights)
+
+
+class Evaluator(Protocol[W]):
     """Energies and silhouettes of one body in fixed pinhole cameras, views kept apart."""
 
     body: Body
     cameras: tuple[Camera, ...]
 
-    def prepared(self, maps: WeightMaps) -> Weights:
+    def prepared(self, maps: WeightMaps) -> W:
         """The weight maps in the backend's form."""
         ...
 
     def masked(
         self,
-        weights: Weights,
+        weights: W,
         pose: np.ndarray,
         moving: Sequence[int],
         windows: np.ndarray | None = None,
-    ) -> Weights:
+    ) -> W:
         """Weights under which the ``moving`` segments alone give the full energy (section 4.3).
 
         The other segments are rendered once in ``pose`` (D,); where they cover, w becomes 0 and
@@ -65,7 +68,7 @@ class Evaluator(Protocol):
         ...
 
     def energies(
-        self, weights: Weights, poses: np.ndarray, segments: Sequence[int] | None = None
+        self, weights: W, poses: np.ndarray, segments: Sequence[int] | None = None
     ) -> np.ndarray:
         """(N, V) int64 energies of poses (N, D) or (N, V, D), of all or the given segments."""
         ...

@@ -1,9 +1,12 @@
 """Checked, read-only arrays for frozen dataclasses."""
 
 import numpy as np
+from numpy.typing import DTypeLike
 
 
-def frozen_array(values, shape: tuple[int | None, ...], name: str, dtype=float) -> np.ndarray:
+def frozen_array(
+    values, shape: tuple[int | None, ...], name: str, dtype: DTypeLike = float
+) -> np.ndarray:
     """A read-only, contiguous, finite copy of ``values``.
 
     Args:

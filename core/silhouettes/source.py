@@ -21,13 +21,12 @@ class Extractor(Protocol):
 
 
 class Rectifier(Protocol):
-    """Carries footage pixels to the pixels of the pinhole camera that the fit uses.
+    """Carries footage pixels to the pixels of the pinhole camera that the fit uses."""
 
-    Attributes:
-        observed: (H', W') bool, False where no footage pixel lands.
-    """
-
-    observed: np.ndarray
+    @property
+    def observed(self) -> np.ndarray:
+        """(H', W') bool, False where no footage pixel lands."""
+        ...
 
     def undistorted(self, picture: np.ndarray) -> np.ndarray:
         """(H', W') uint8 picture of a (H, W) uint8 one."""
