@@ -11,7 +11,9 @@ from walk_render import HEIGHT, WIDTH, Camera, Flesh
 LIGHT = np.array([0.30, -0.42, 0.86])
 LIGHT_SPREAD = 0.07
 ROOM_RADIUS = 6.0
-SHADOW_SIDE, SHADOW_STEP, SHADOW_DEPTH = 8.0, 0.02, 0.5
+SHADOW_SIDE, SHADOW_STEP = 8.0, 0.02
+# a lamp that gives half of the light: 1 - 0.5 ** (1 / 2.2) in gamma-encoded values
+SHADOW_DEPTH = 0.27
 NOISE = 1.6
 COLOURS_RGB = {
     "skin": (214, 166, 138), "hair": (62, 42, 32), "shirt": (178, 58, 52),
