@@ -9,7 +9,9 @@ black clothes would be shadow everywhere.
 
 Both tests read the picture's difference to the plate after a bilateral filter, which takes the
 camera's noise out of flat regions and leaves contours where they are; neighbours of like colour
-then decide together (``coherence``).
+then decide together (``coherence``). Where the scene is as dark as the shorts before it, no
+difference proves nothing: what has the performer's own colours counts little against him, and gaps
+of such colours that he all but surrounds are his (``own_colours``).
 """
 
 from dataclasses import dataclass
@@ -20,6 +22,7 @@ import numpy as np
 from ..footage.pictures import colour_picture
 from .coherence import Coherence, coherent
 from .drift import plate_in
+from .own_colours import bridged, own_colours
 from .plate import Plate
 
 _SMOOTHING_PX = 1.0
@@ -27,6 +30,7 @@ _SMOOTHING_DEVIATIONS = 12.0
 _LEAST_NOISE = 0.5
 _SURE = 4.0
 _NOISE_DEVIATIONS = 2.0
+_OWN = 0.1
 _MARGIN_PX = 8
 
 
@@ -47,7 +51,7 @@ class StatisticsSettings:
 
     deviations: float = 8.0
     hue_deg: float = 8.0
-    angle_deg: float = 1.0
+    angle_deg: float = 1.5
     saturation: float = 0.25
     darkest: float = 0.65
     coherence: float = 2.0
@@ -81,7 +85,11 @@ class Statistics:
         change = distance - settings.deviations
         evidence = np.minimum(change, against_shadow(colours, background, spread, settings))
         evidence = np.clip(evidence, -_SURE, _SURE).astype(np.float32)
-        return coherent(evidence, colours, background, Coherence(settings.coherence))
+        coherence = Coherence(settings.coherence)
+        labels = coherent(evidence, colours, background, coherence)
+        own = own_colours(colours, labels)
+        evidence[own & (evidence < 0)] *= _OWN
+        return bridged(coherent(evidence, colours, background, coherence), own)
 
 
 def _smoothed(colours: np.ndarray, background: Plate) -> tuple[np.ndarray, np.ndarray]:
