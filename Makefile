@@ -5,7 +5,7 @@ SHELL := /bin/bash
 .SHELLFLAGS := -eu -o pipefail -c
 .DEFAULT_GOAL := help
 MOCAP := .venv/bin/silhouette-mocap
-NATIVE := $(wildcard setup.py core/native/*.py core/native/*.c core/native/*.h)
+KERNEL := $(wildcard core/native/build.py core/native/*.c core/native/*.h)
 CORE_TESTS := tests/core tests/test_layers.py
 
 .PHONY: help env demo demo-real test lint test-core test-addon bench blender clean
@@ -13,20 +13,25 @@ CORE_TESTS := tests/core tests/test_layers.py
 help: ## This list
 	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /make \1\t/' | expand -t 18
 
-env: .venv/.installed .venv-3.13/.installed ## Both Python environments, with Blender as a module
+env: .venv/.ready .venv-3.13/.installed ## Both Python environments, with Blender as a module
 
-.venv/.installed: pyproject.toml $(NATIVE)
+.venv/.installed: pyproject.toml $(wildcard setup.py)
 	@.ci/environment 3.11 .venv
 
-.venv-3.13/.installed: pyproject.toml $(NATIVE)
+.venv-3.13/.installed: pyproject.toml $(wildcard setup.py)
 	@.ci/environment 3.13 .venv-3.13
 
-demo: .venv/.installed ## Fit the sample walk, from masks and from silhouette videos, into out/
+# the kernel lies in the checkout, so both environments see the one built here
+.venv/.ready: .venv/.installed $(KERNEL)
+	@.venv/bin/python core/native/build.py >/dev/null
+	@touch $@
+
+demo: .venv/.ready ## Fit the sample walk, from masks and from silhouette videos, into out/
 	@$(MOCAP) fit sample_scenes/walk/take.toml --out out/walk
 	@$(MOCAP) fit sample_scenes/walk/take_videos.toml --out out/walk_videos
 	@.venv/bin/python .ci/results.py out/walk out/walk_videos
 
-demo-real: .venv/.installed ## Fetch the real four-camera recording and fit it into out/balance
+demo-real: .venv/.ready ## Fetch the real four-camera recording and fit it into out/balance
 	@.venv/bin/python sample_scenes/balance/fetch.py
 	@$(MOCAP) plate sample_scenes/balance/take.toml --recipes sample_scenes/balance/plates.toml
 	@$(MOCAP) masks sample_scenes/balance/take.toml --out out/balance/masks
@@ -48,7 +53,7 @@ test-addon: env
 	.venv/bin/python -m pytest -q -n 2 tests/addon
 	.venv-3.13/bin/python -m pytest -q -n 2 tests/addon
 
-bench: .venv/.installed ## Speed of the energy, beside frozen baselines where they are at hand
+bench: .venv/.ready ## Speed of the energy, beside frozen baselines where they are at hand
 	@.venv/bin/python tests/benchmarks/energy.py
 
 blender: ## A real Blender 5.2 beside the checkout (needs root and a Debian-like machine)

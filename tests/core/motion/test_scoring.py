@@ -70,6 +70,16 @@ def test_an_offset_fixed_to_another_bone_needs_that_bones_rotations():
     assert without.points["left_wrist"].offset_removed > 10
 
 
+def test_offsets_are_learnt_on_even_seconds_and_judged_on_odd_ones():
+    second = np.arange(FRAMES) // 15
+    moved = walking()
+    moved[second % 2 == 1, 0] += np.array([0, 0, 0.05])
+    unlearnt = score(track(walking()), track(moved)).points["head"]
+    assert unlearnt.offset == (0, 0, 0) and unlearnt.offset_removed == pytest.approx(50)
+    moved[second % 2 == 0, 0] += np.array([0, 0, 0.05])
+    assert score(track(walking()), track(moved)).points["head"].offset_removed < 1e-6
+
+
 def test_a_shift_of_the_whole_body_is_no_error_about_the_root():
     result = score(track(walking()), track(walking() + np.array([0.1, 0, 0])))
     assert result.absolute.mean == pytest.approx(100)
