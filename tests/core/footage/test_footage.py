@@ -1,0 +1,152 @@
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+from silhouette_mocap.core.errors import MocapError
+from silhouette_mocap.core.footage.footage import open_footage
+from silhouette_mocap.core.footage.pictures import colour_picture, read_picture, write_picture
+
+
+def _picture(value: int, size=(24, 16)) -> np.ndarray:
+    picture = np.zeros((size[1], size[0], 3), np.uint8)
+    picture[:, : size[0] // 2] = value
+    return picture
+
+
+def _write_video(path: Path, values, size=(64, 48)) -> Path:
+    video = cv2.VideoWriter(str(path), cv2.VideoWriter_fourcc(*"mp4v"), 15.0, size)
+    for value in values:
+        video.write(_picture(value, size))
+    video.release()
+    return path
+
+
+@pytest.mark.parametrize("suffix", [".png", ".tif", ".bmp"])
+def test_a_numbered_sequence_gives_its_own_frame_numbers(tmp_path, suffix):
+    for frame in (7, 8, 9):
+        write_picture(tmp_path / "böse ordner" / f"a {frame:04d}{suffix}", _picture(frame * 10))
+    pattern = tmp_path / "{camera} ordner" / ("a {frame:04d}" + suffix)
+    footage = open_footage(pattern, "böse", (7, 9))
+    assert footage.size == (24, 16)
+    assert footage.fps is None
+    assert list(footage.frames) == [7, 8, 9]
+    assert [frame for frame, _ in footage.pictures(8, 9)] == [8, 9]
+    assert np.array_equal(footage.picture(9), _picture(90))
+
+
+def test_a_folder_without_numbering_is_sorted_naturally_and_counted_from_zero(tmp_path):
+    for number in (10, 9, 100):
+        write_picture(tmp_path / "cam" / f"shot{number}.png", _picture(number))
+    (tmp_path / "cam" / "._shot9.png").write_bytes(b"left by a Mac")
+    footage = open_footage(tmp_path / "{camera}", "cam")
+    assert [int(footage.picture(frame)[0, 0, 0]) for frame in footage.frames] == [9, 10, 100]
+
+
+def test_unpadded_numbers_and_folders_per_frame_are_found(tmp_path):
+    for frame in (9, 10):
+        write_picture(tmp_path / f"{frame}" / "cam.png", _picture(frame))
+    footage = open_footage(tmp_path / "{frame}" / "{camera}.png", "cam")
+    assert list(footage.frames) == [9, 10]
+
+
+def test_a_missing_frame_is_named_with_camera_number_path_and_remedy(tmp_path):
+    for frame in (0, 1, 3):
+        write_picture(tmp_path / f"{frame:06d}.png", _picture(1))
+    with pytest.raises(MocapError) as caught:
+        open_footage(tmp_path / "{frame:06d}.png", "left", (0, 3))
+    line = str(caught.value)
+    assert "camera left, frame 2" in line
+    assert str(tmp_path / "000002.png") in line
+    assert "narrow the take's frames" in line
+
+
+def test_a_missing_folder_is_named_as_expanded(tmp_path):
+    with pytest.raises(MocapError, match=r"nowhere.*left.*no such footage"):
+        open_footage(tmp_path / "nowhere" / "{camera}.mp4", "left")
+    with pytest.raises(MocapError, match=r"left.*frame:06d.*how many digits"):
+        open_footage(tmp_path / "{camera}" / "abc{frame:06d}.png", "left")
+
+
+def test_a_misspelt_placeholder_is_pointed_out(tmp_path):
+    with pytest.raises(MocapError, match=r"only \{camera\} and \{frame\}"):
+        open_footage(tmp_path / "{cam}.mp4", "left")
+
+
+def test_a_single_picture_is_no_footage(tmp_path):
+    write_picture(tmp_path / "left.png", _picture(1))
+    with pytest.raises(MocapError, match="frame:06d"):
+        open_footage(tmp_path / "{camera}.png", "left")
+
+
+def test_a_picture_of_another_size_is_refused_when_it_is_reached(tmp_path):
+    write_picture(tmp_path / "0.png", _picture(1))
+    write_picture(tmp_path / "1.png", _picture(1, (30, 16)))
+    footage = open_footage(tmp_path / "{frame}.png", "left", (0, 1))
+    footage.picture(0)
+    with pytest.raises(MocapError, match=r"frame 1: is 30 x 16 px, .* 24 x 16 px"):
+        footage.picture(1)
+
+
+def test_a_cut_off_picture_is_refused_with_its_name(tmp_path):
+    write_picture(tmp_path / "0.png", np.random.default_rng(0).integers(0, 255, (40, 40), np.uint8))
+    whole = (tmp_path / "0.png").read_bytes()
+    (tmp_path / "0.png").write_bytes(whole[:40])
+    with pytest.raises(MocapError, match=r"0\.png, camera left, frame 0: .*cut short"):
+        open_footage(tmp_path / "{frame}.png", "left")
+
+
+def test_sixteen_bit_and_grey_pictures_become_eight_bit_colour(tmp_path):
+    write_picture(tmp_path / "deep.png", np.full((4, 5), 257 * 200, np.uint16))
+    picture = read_picture(tmp_path / "deep.png")
+    assert picture.dtype == np.uint16
+    assert np.array_equal(colour_picture(picture), np.full((4, 5, 3), 200, np.uint8))
+
+
+def test_video_pictures_are_the_same_forwards_backwards_and_at_random(tmp_path):
+    path = _write_video(tmp_path / "left.mp4", range(40, 240, 20))
+    footage = open_footage(tmp_path / "{camera}.mp4", "left")
+    assert footage.size == (64, 48)
+    assert footage.fps == pytest.approx(15)
+    in_order = [int(picture[20, 10, 0]) for _, picture in footage.pictures(0, 9)]
+    assert np.abs(np.array(in_order) - np.arange(40, 240, 20)).max() <= 6
+    jumps = [9, 0, 5, 5, 3, 8]
+    assert [int(footage.picture(frame)[20, 10, 0]) for frame in jumps] == [
+        in_order[frame] for frame in jumps
+    ]
+    assert list(open_footage(path, "left").frames) == list(range(10))
+
+
+def test_a_video_that_is_too_short_says_where_it_ends(tmp_path):
+    footage = open_footage(_write_video(tmp_path / "a.mp4", range(50, 100, 10)), "left")
+    with pytest.raises(MocapError, match=r"camera left, frame 5: ends after 5 frames"):
+        list(footage.pictures(0, 7))
+
+
+def test_a_damaged_video_is_counted_by_decoding(tmp_path):
+    rng = np.random.default_rng(1)
+    path = tmp_path / "a.avi"
+    video = cv2.VideoWriter(str(path), cv2.VideoWriter_fourcc(*"MJPG"), 25.0, (64, 48))
+    for _ in range(20):
+        video.write(rng.integers(0, 255, (48, 64, 3), np.uint8))
+    video.release()
+    path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
+    footage = open_footage(path, "left")
+    assert 5 <= len(footage.frames) < 15
+    with pytest.raises(MocapError, match="left, frame 19: "):
+        footage.picture(19)
+
+
+def test_what_is_no_video_is_refused(tmp_path):
+    (tmp_path / "a.mp4").write_bytes(b"not a video" * 50)
+    with pytest.raises(MocapError, match=r"a\.mp4, camera left: is no video"):
+        open_footage(tmp_path / "a.mp4", "left")
+
+
+def test_pictures_are_read_only_when_they_are_asked_for(tmp_path):
+    write_picture(tmp_path / "0.png", _picture(1))
+    (tmp_path / "1.png").write_bytes(b"broken")
+    stream = open_footage(tmp_path / "{frame}.png", "left", (0, 1)).pictures(0, 1)
+    assert next(stream)[0] == 0
+    with pytest.raises(MocapError, match="frame 1"):
+        next(stream)
