@@ -105,7 +105,6 @@ def test_another_version_is_told(path):
         {"offsets": None},
         {"parents": np.full(21, 5, np.int32)},
         {"segment_joints": np.full(21, 99, np.int32)},
-        {"surface_0_triangles": np.full((9, 3), 10**6, np.int32)},
         {"part_dofs": np.full(49, 77, np.int32)},
         {"cone_starts": np.zeros(2, np.int32)},
         {"dof_kinds": np.full(49, 2, np.int32)},
@@ -114,6 +113,14 @@ def test_another_version_is_told(path):
 def test_a_damaged_file_is_told_before_anything_uses_it(path, changes):
     rewritten(path, **changes)
     with pytest.raises(MocapError, match="is a damaged body file"):
+        read_body(path)
+
+
+def test_a_triangle_without_its_vertex_is_told(path, performer_body):
+    triangles = performer_body.surfaces[0].triangles.copy()
+    triangles[7, 1] = 10**6
+    rewritten(path, surface_0_triangles=triangles)
+    with pytest.raises(MocapError, match="expected triangles from 0 to"):
         read_body(path)
 
 
