@@ -7,8 +7,7 @@ alone carries positions.
 """
 
 import contextlib
-import os
-import sys
+import io
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -92,7 +91,7 @@ def _write(
         if suffix == "trc":
             write_trc(path, request.motion)
             return path
-        with _quiet():
+        with contextlib.redirect_stdout(io.StringIO()):  # read by programs, not Blender's to fill
             _WRITERS[suffix](partial, scene, performance)
         partial.replace(path)
     except (OSError, RuntimeError) as error:
@@ -101,23 +100,6 @@ def _write(
     finally:
         partial.unlink(missing_ok=True)
     return path
-
-
-@contextlib.contextmanager
-def _quiet() -> Iterator[None]:
-    """Keeps what Blender tells about its files off the output, which is read by programs."""
-    if not bpy.app.background:
-        yield
-        return
-    sys.stdout.flush()
-    kept = os.dup(1)
-    try:
-        with open(os.devnull, "w") as nothing, contextlib.redirect_stdout(nothing):
-            os.dup2(nothing.fileno(), 1)
-            yield
-    finally:
-        os.dup2(kept, 1)
-        os.close(kept)
 
 
 def _write_blend(path: Path, scene: bpy.types.Scene, performance: Performance) -> None:

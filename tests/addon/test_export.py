@@ -16,6 +16,7 @@ from bl_ext.user_default.silhouette_mocap.addon.export import export_take
 from bl_ext.user_default.silhouette_mocap.core.body.templates import template
 from bl_ext.user_default.silhouette_mocap.core.cameras.camera import Camera
 from bl_ext.user_default.silhouette_mocap.core.errors import MocapError
+from io_scene_fbx import parse_fbx
 
 TOLERANCE = 1e-3  # metres
 
@@ -76,15 +77,35 @@ def test_the_fbx_file_gives_the_joints_of_the_motion(take):
     assert largest_error(take, joints) < TOLERANCE
 
 
-def test_the_fbx_file_has_one_take_and_no_scale_on_the_performer(take):
+def test_the_fbx_file_has_one_take_with_a_key_in_every_frame_and_no_further_bones(take):
     (path,) = exported(take, "fbx")
     empty_scene()
     bpy.ops.import_scene.fbx(filepath=str(path))
-    assert len(bpy.data.actions) == 1
-    for ob in bpy.data.objects:
-        assert np.allclose(ob.matrix_world.to_scale(), 1, atol=1e-6)
+    (action,) = bpy.data.actions
+    curves = action.layers[0].strips[0].channelbag(action.slots[0]).fcurves
+    assert {len(curve.keyframe_points) for curve in curves} == {len(take.motion.frames)}
     bones = {bone.name for ob in bpy.data.armatures for bone in ob.bones}
     assert bones == set(bone_names(take.body))
+
+
+def properties(path, name):
+    """The values of all properties of that name in an FBX file, wherever they stand."""
+    found = []
+
+    def walk(element):
+        if element.id == b"P" and element.props[0] == name:
+            found.append(element.props[4:])
+        for child in element.elems:
+            walk(child)
+
+    walk(parse_fbx.parse(str(path))[0])
+    return found
+
+
+def test_the_fbx_file_tells_its_unit_once_and_scales_no_object(small_body, make_take):
+    (path,) = exported(make_take(small_body), "fbx")
+    assert properties(path, b"UnitScaleFactor") == [[100.0]]  # centimetres
+    assert np.allclose(properties(path, b"Lcl Scaling"), 1)
 
 
 def test_the_bvh_file_gives_the_joints_of_the_motion(take):

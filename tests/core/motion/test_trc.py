@@ -62,6 +62,7 @@ def test_files_are_in_millimetres_with_y_up_and_tabs_as_opensim_reads_them(motio
     assert [float(cell) for cell in cells[2:5]] == pytest.approx([y, z, x], abs=1e-5)
     assert float(cells[1]) == pytest.approx(10 * 1001 / 30000, abs=1e-6)
     assert {len(line.split("\t")) for line in lines[6:]} == {2 + 3 * 14}
+    assert lines[8].split("\t")[2 + 3 * 6 :][:3] == ["", "", ""]  # the gap
 
 
 def test_a_hand_written_file_in_metres_with_a_gap_is_read(tmp_path):
