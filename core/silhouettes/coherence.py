@@ -38,26 +38,37 @@ class Coherence:
     scene_edge: float = 20.0
 
 
-def coherent(
-    evidence: np.ndarray, colours: np.ndarray, background: np.ndarray, coherence: Coherence
-) -> np.ndarray:
-    """(H, W) bool, True for foreground.
+Region = tuple[slice, slice]
+
+
+def neighbour_pulls(
+    colours: np.ndarray, background: np.ndarray, coherence: Coherence
+) -> list[tuple[Region, Region, np.ndarray]]:
+    """For each step to a neighbour: the pixels, their neighbours, and the pull between them.
 
     Args:
-        evidence: (H, W) float32, positive for foreground, about -4 to 4 (log odds).
         colours: (H, W, 3) float32 picture.
         background: (H, W, 3) float32 empty scene.
         coherence: how strongly neighbours pull.
     """
-    pairs = [
+    return [
         (here, there, _pull(colours, background, here, there, coherence) / math.hypot(*step))
         for step in _NEIGHBOURS
-        for here, there in [_slices(step, evidence.shape)]
+        for here, there in [_slices(step, colours.shape[:2])]
     ]
+
+
+def coherent(evidence: np.ndarray, pulls: list[tuple[Region, Region, np.ndarray]]) -> np.ndarray:
+    """(H, W) bool, True for foreground.
+
+    Args:
+        evidence: (H, W) float32, positive for foreground, about -4 to 4 (log odds).
+        pulls: as from ``neighbour_pulls``.
+    """
     labels = np.tanh(evidence / 2)
     for _ in range(_ROUNDS):
         total = evidence.copy()
-        for here, there, pull in pairs:
+        for here, there, pull in pulls:
             total[here] += pull * labels[there]
             total[there] += pull * labels[here]
         labels = np.tanh(total / 2)

@@ -32,5 +32,5 @@ class Difference:
     def foreground(self, picture: np.ndarray) -> np.ndarray:
         """(H, W) bool, True where ``picture`` differs from the plate."""
         colours = colour_picture(picture).astype(np.float32)
-        background = plate_in(self.plate, colours, self.settings.drift)
-        return np.abs(colours - background.mean).max(axis=2) > self.settings.threshold
+        mean, _ = plate_in(self.plate, colours, self.settings.drift)
+        return np.abs(colours - mean).max(axis=2) > self.settings.threshold

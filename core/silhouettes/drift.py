@@ -70,8 +70,10 @@ def _line(x: np.ndarray, y: np.ndarray) -> tuple[float, float, float]:
     return gain, offset, spread
 
 
-def plate_in(plate: Plate, colours: np.ndarray, drift: bool) -> Plate:
-    """``plate`` with the exposure and at least the noise of one picture.
+def plate_in(plate: Plate, colours: np.ndarray, drift: bool) -> tuple[np.ndarray, np.ndarray]:
+    """Mean and spread (H, W, 3) of ``plate`` with the exposure and noise of one picture.
+
+    The spread is at least the picture's own noise.
 
     Args:
         plate: the empty scene.
@@ -82,4 +84,4 @@ def plate_in(plate: Plate, colours: np.ndarray, drift: bool) -> Plate:
     step = max(1, min(colours.shape[:2]) // _GRID)
     found = drift_between(plate.mean[::step, ::step], colours[::step, ::step])
     spread = np.maximum(plate.spread, found.noise.astype(np.float32))
-    return Plate(found.applied(plate.mean) if drift else plate.mean, spread)
+    return found.applied(plate.mean) if drift else plate.mean, spread

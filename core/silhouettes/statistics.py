@@ -20,7 +20,7 @@ import cv2
 import numpy as np
 
 from ..footage.pictures import colour_picture
-from .coherence import Coherence, coherent
+from .coherence import Coherence, coherent, neighbour_pulls
 from .drift import plate_in
 from .own_colours import bridged, own_colours
 from .plate import Plate
@@ -68,16 +68,14 @@ class Statistics:
     def foreground(self, picture: np.ndarray) -> np.ndarray:
         """(H, W) bool, True where the performer is."""
         colours = colour_picture(picture).astype(np.float32)
-        background = plate_in(self.plate, colours, self.settings.drift)
-        colours, spread = _smoothed(colours, background)
-        deviations = (colours - background.mean) / spread
+        mean, spread = plate_in(self.plate, colours, self.settings.drift)
+        colours, spread = _smoothed(colours, mean, spread)
+        deviations = (colours - mean) / spread
         distance = np.sqrt(_dot(deviations, deviations))
         mask = np.zeros(distance.shape, bool)
         area = _around(distance > self.settings.deviations)
         if area is not None:
-            mask[area] = self._labels(
-                distance[area], colours[area], background.mean[area], spread[area]
-            )
+            mask[area] = self._labels(distance[area], colours[area], mean[area], spread[area])
         return mask
 
     def _labels(self, distance, colours, background, spread) -> np.ndarray:
@@ -85,24 +83,25 @@ class Statistics:
         change = distance - settings.deviations
         evidence = np.minimum(change, against_shadow(colours, background, spread, settings))
         evidence = np.clip(evidence, -_SURE, _SURE).astype(np.float32)
-        coherence = Coherence(settings.coherence)
-        labels = coherent(evidence, colours, background, coherence)
+        pulls = neighbour_pulls(colours, background, Coherence(settings.coherence))
+        labels = coherent(evidence, pulls)
         own = own_colours(colours, labels)
         evidence[own & (evidence < 0)] *= _OWN
-        return bridged(coherent(evidence, colours, background, coherence), own)
+        return bridged(coherent(evidence, pulls), own)
 
 
-def _smoothed(colours: np.ndarray, background: Plate) -> tuple[np.ndarray, np.ndarray]:
-    """The picture and its spread (H, W, 3), both with the noise of flat regions smoothed away."""
-    noise = float(background.spread.mean())
-    rest = colours - background.mean
+def _smoothed(
+    colours: np.ndarray, mean: np.ndarray, spread: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """The picture and the spread (H, W, 3), both with the noise of flat regions smoothed away."""
+    noise = float(spread.mean())
+    rest = colours - mean
     smooth = cv2.bilateralFilter(rest, 0, _SMOOTHING_DEVIATIONS * noise, _SMOOTHING_PX)
     step = max(1, min(rest.shape[:2]) // 100)
     before = np.median(np.abs(rest[::step, ::step]), axis=(0, 1))
     after = np.median(np.abs(smooth[::step, ::step]), axis=(0, 1))
     gain = np.where(before > 0, after / np.maximum(before, 1e-6), 1)
-    spread = np.maximum(background.spread * gain.astype(np.float32), _LEAST_NOISE)
-    return background.mean + smooth, spread
+    return mean + smooth, np.maximum(spread * gain.astype(np.float32), _LEAST_NOISE)
 
 
 def _around(mask: np.ndarray) -> tuple[slice, slice] | None:
