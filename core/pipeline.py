@@ -21,7 +21,7 @@ from .initialisation.first_pose import FirstFit, PoseRequest, initialised
 from .motion.export_request import Exporter, ExportRequest
 from .motion.formats.trc import write_trc
 from .motion.motion import Motion, read_motion, write_motion
-from .motion.overlay import Tile, overlay_picture, write_overlay
+from .motion.overlay import OverlayVideo, Tile, overlay_picture
 from .motion.point_track import PointTrack, read_point_track
 from .motion.recording import recorded
 from .motion.report import fit_quality, versions, write_report
@@ -29,12 +29,15 @@ from .motion.scoring import score
 from .progress import Progress
 from .rendering.native import NativeEvaluator
 from .rendering.reference import ReferenceEvaluator
+from .silhouettes.silhouette import Silhouette
 from .take.shown_footage import shown_footage
 from .take.take import Take
 from .take.views import Views, open_views
 
 MOTION, BODY, REPORT, OVERLAY = "motion.npz", "body.npz", "report.json", "overlay.mp4"
 _MOST_INITIAL_FRAMES = 8
+Silhouettes = tuple[Silhouette, ...]
+"""One frame's, camera by camera."""
 
 
 def native(body: Body, cameras: tuple[Camera, ...]) -> Evaluator:
@@ -109,18 +112,19 @@ def fit(take: Take, request: FitRequest, progress: Progress) -> FitResult:
             return _written(take, request, views, first, fits)
 
     progress.begin("fit", views.frames[1] - views.frames[0] + 1)
-    try:
-        for found in _tracked(tracker, first.pose, views, start[0]):
-            fits.append(found)
-            progress.advance(found.frame, found.seconds, float(np.nanmean(found.scores.iou)))
-    except BaseException:
-        if fits:
-            progress.note(f"the {len(fits)} finished frames are kept in {save().files[0]}")
-        raise
-    result = save()
-    overlay = request.out / OVERLAY
-    write_overlay(overlay, float(take.fps), _overlays(tracker.evaluator, views, result.motion))
-    return FitResult(result.motion, result.report, (*result.files, overlay))
+    with OverlayVideo(request.out / OVERLAY, float(take.fps)) as overlay:
+        try:
+            for found, seen in _tracked(tracker, first.pose, views, start[0]):
+                fits.append(found)
+                overlay.add(found.frame, _overlay(tracker.evaluator, views, found, seen))
+                progress.advance(found.frame, found.seconds, float(np.nanmean(found.scores.iou)))
+        except BaseException:
+            if fits:
+                progress.note(f"the {len(fits)} finished frames are kept in {save().files[0]}")
+            raise
+        result = save()
+        overlay.write()
+    return FitResult(result.motion, result.report, (*result.files, overlay.path))
 
 
 def check_formats(formats: Sequence[str], exporter: Exporter | None) -> None:
@@ -218,11 +222,19 @@ def _first_fit(take: Take, views: Views, start: Sequence[int], request: FitReque
 
 def _tracked(
     tracker: HierarchicalTracker, pose: np.ndarray, views: Views, start: int
-) -> Iterator[FrameFit]:
+) -> Iterator[tuple[FrameFit, Silhouettes]]:
     """Fits of ``start`` and what follows, then of what comes before it, backwards."""
     first, last = views.frames
     for frames in (range(start, last + 1), range(start - 1, first - 1, -1)):
-        yield from track(tracker, pose, ((frame, views.silhouettes(frame)) for frame in frames))
+        seen: dict[int, Silhouettes] = {}
+
+        def read(frames=frames, seen=seen) -> Iterator[tuple[int, Silhouettes]]:
+            for frame in frames:
+                seen[frame] = views.silhouettes(frame)
+                yield frame, seen[frame]
+
+        for found in track(tracker, pose, read()):
+            yield found, seen.pop(found.frame)
 
 
 def _written(
@@ -278,13 +290,12 @@ def _error(take: Take, motion: Motion) -> dict | None:
     return score(truth, found).as_dict()
 
 
-def _overlays(evaluator: Evaluator, views: Views, motion: Motion) -> Iterator[np.ndarray]:
-    for row, frame in enumerate(motion.frames.tolist()):
-        rendered = evaluator.silhouettes(motion.pose[row])
-        tiles = [
-            Tile(f"{view.camera.name}  IoU {iou:.2f}", view.picture(frame), seen, drawn)
-            for view, iou, seen, drawn in zip(
-                views.views, motion.iou[row], views.silhouettes(frame), rendered, strict=True
-            )
-        ]
-        yield overlay_picture(tiles, f"frame {frame}")
+def _overlay(evaluator: Evaluator, views: Views, found: FrameFit, seen: Silhouettes) -> np.ndarray:
+    rendered = evaluator.silhouettes(found.pose)
+    tiles = [
+        Tile(f"{view.camera.name}  IoU {iou:.2f}", view.picture(found.frame), silhouette, drawn)
+        for view, iou, silhouette, drawn in zip(
+            views.views, found.scores.iou, seen, rendered, strict=True
+        )
+    ]
+    return overlay_picture(tiles, f"frame {found.frame}")

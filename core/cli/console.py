@@ -11,6 +11,7 @@ _CLEAR_LINE = "\r\x1b[K"
 def say(line: str = "") -> None:
     """Writes a line of the result."""
     sys.stdout.write(line + "\n")
+    sys.stdout.flush()
 
 
 def complain(line: str) -> None:

@@ -1,10 +1,12 @@
 """``masks``: silhouettes from footage, with a quality figure per view."""
 
 import argparse
+import math
 from pathlib import Path
 
 from ..motion.export_request import Exporter
-from ..take.extraction import MaskQuality, write_take_masks
+from ..silhouettes.quality import MaskQuality
+from ..take.extraction import write_take_masks
 from ..take.views import open_views
 from .arguments import add_cameras_and_frames, add_progress, add_take, shown_progress, taken
 from .console import say
@@ -29,16 +31,18 @@ def run(arguments: argparse.Namespace, exporter: Exporter | None) -> int:
     views = open_views(taken(arguments), arguments.without, arguments.frames)
     qualities = write_take_masks(views, arguments.out, shown_progress(arguments))
     say(
-        f"{'camera':<16}{'frames':>8}{'empty':>8}{'flicker':>10}{'specks':>8}{'holes':>8}{'edge':>8}"
+        f"{'camera':<16}{'frames':>8}{'empty':>8}{'coverage':>10}{'specks':>8}{'contrast':>10}"
+        f"{'flicker':>9}"
     )
-    for quality in qualities:
-        say(_row(quality))
+    for camera, quality in qualities.items():
+        say(f"{camera:<16}{_figures(quality)}")
     say(f"wrote {arguments.out}/CAMERA/FRAME.png")
     return 0
 
 
-def _row(quality: MaskQuality) -> str:
+def _figures(quality: MaskQuality) -> str:
+    contrast = "-" if math.isnan(quality.contrast) else f"{quality.contrast:.0f}"
     return (
-        f"{quality.camera:<16}{quality.frames:>8}{quality.empty:>8}{quality.flicker:>10.1%}"
-        f"{quality.specks:>8.1f}{quality.holes:>8.1f}{quality.at_edge:>8.0%}"
+        f"{quality.frames:>8}{quality.empty:>8}{quality.coverage:>10.1%}{quality.specks:>8.1f}"
+        f"{contrast:>10}{quality.flicker:>9.1%}"
     )

@@ -8,7 +8,7 @@ from ..errors import MocapError
 from ..motion.export_request import Exporter
 from ..silhouettes.plate_recipe import PlateRecipe, read_plate_recipes
 from ..take.extraction import make_plate
-from .arguments import add_cameras_and_frames, add_progress, add_take, shown_progress, taken
+from .arguments import add_cameras_and_frames, add_take, taken
 from .console import say
 
 NAME = "plate"
@@ -27,7 +27,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="what helps each camera: a still with the performer elsewhere, boxes, frames",
     )  # fmt: skip
     add_cameras_and_frames(parser)
-    add_progress(parser)
 
 
 def run(arguments: argparse.Namespace, exporter: Exporter | None) -> int:
@@ -40,13 +39,7 @@ def run(arguments: argparse.Namespace, exporter: Exporter | None) -> int:
         if name not in names:
             raise MocapError(f'there is no camera "{name}"', f"the cameras are {', '.join(names)}")
     used = [name for name in names if name not in arguments.without]
-    progress = shown_progress(arguments)
-    progress.begin("plate", len(used))
-    written = []
-    for number, name in enumerate(used):
-        recipe = recipes.get(name, PlateRecipe())
-        written.append(make_plate(take, name, recipe, arguments.frames))
-        progress.advance(number)
-    for path in written:
+    for name in used:
+        path = make_plate(take, name, recipes.get(name, PlateRecipe()), arguments.frames)
         say(f"wrote {path}, made from the footage itself: check that nobody is left in it")
     return 0

@@ -4,7 +4,8 @@ Green is where both are, red where only the model is, blue where only the perfor
 """
 
 import math
-from collections.abc import Iterable, Sequence
+import tempfile
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,6 +13,7 @@ import cv2
 import numpy as np
 
 from ..errors import MocapError
+from ..footage.pictures import read_picture, write_picture
 from ..silhouettes.silhouette import Silhouette
 
 BOTH, MODEL_ONLY, OBSERVED_ONLY = (60, 200, 60), (40, 40, 240), (255, 120, 30)
@@ -39,7 +41,7 @@ class Tile:
 
 
 def overlay_picture(tiles: Sequence[Tile], title: str) -> np.ndarray:
-    """(H, W, 3) uint8 BGR picture of all views side by side, even in both sizes, ``title`` on top."""
+    """(H, W, 3) uint8 BGR picture of all views side by side, ``title`` on top; of even sizes."""
     columns = math.ceil(math.sqrt(len(tiles)))
     pictures = [_scaled_and_labelled(tile) for tile in tiles]
     height = max(picture.shape[0] for picture in pictures)
@@ -51,30 +53,53 @@ def overlay_picture(tiles: Sequence[Tile], title: str) -> np.ndarray:
     return _padded(np.vstack([strip, *rows]))
 
 
-def write_overlay(path: Path, fps: float, pictures: Iterable[np.ndarray]) -> None:
-    """Writes pictures (H, W, 3) uint8 BGR of one size as a video, whole or not at all.
+class OverlayVideo:
+    """Collects overlay pictures in any order of frames and writes them as one video.
 
-    Raises:
-        MocapError: the video cannot be written.
+    Until then they lie compressed in a hidden folder beside it; leaving the context removes them.
+
+    Args:
+        path: the video to write.
+        fps: frames per second.
     """
-    partial = path.with_name(f".{path.stem}.partial{path.suffix}")
-    video = None
-    try:
-        for picture in pictures:
-            if video is None:
-                size = (picture.shape[1], picture.shape[0])
-                code = cv2.VideoWriter.fourcc(*"mp4v")
-                video = cv2.VideoWriter(str(partial), code, fps, size)
-                if not video.isOpened():
-                    raise MocapError("cannot be written", "check the folder", file=path)
-            video.write(picture)
-        if video is not None:
-            video.release()
-            partial.replace(path)
-    finally:
-        if video is not None:
-            video.release()
-        partial.unlink(missing_ok=True)
+
+    def __init__(self, path: Path, fps: float):
+        self.path, self.fps = path, fps
+        self._pictures: dict[int, Path] = {}
+
+    def __enter__(self) -> "OverlayVideo":
+        self._folder = tempfile.TemporaryDirectory(prefix=".overlay_", dir=self.path.parent)
+        return self
+
+    def __exit__(self, *error) -> None:
+        self._folder.cleanup()
+
+    def add(self, frame: int, picture: np.ndarray) -> None:
+        """Keeps the picture (H, W, 3) uint8 BGR of one frame; all are of one size."""
+        file = Path(self._folder.name) / f"{frame}.jpg"
+        write_picture(file, picture, (cv2.IMWRITE_JPEG_QUALITY, 95))
+        self._pictures[frame] = file
+
+    def write(self) -> None:
+        """Writes the video, whole or not at all.
+
+        Raises:
+            MocapError: it cannot be written.
+            ValueError: no picture was added.
+        """
+        if not self._pictures:
+            raise ValueError("expected at least one picture")
+        pictures = [self._pictures[frame] for frame in sorted(self._pictures)]
+        height, width = read_picture(pictures[0]).shape[:2]
+        partial = Path(self._folder.name) / self.path.name
+        code = cv2.VideoWriter.fourcc(*"mp4v")
+        video = cv2.VideoWriter(str(partial), code, self.fps, (width, height))
+        if not video.isOpened():
+            raise MocapError("cannot be written", "check the folder", file=self.path)
+        for file in pictures:
+            video.write(read_picture(file))
+        video.release()
+        partial.replace(self.path)
 
 
 def coloured(tile: Tile) -> np.ndarray:

@@ -1,6 +1,7 @@
 """What the cameras of a take see: calibration and footage brought together, camera by camera."""
 
 from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -80,8 +81,9 @@ class Views:
         return tuple(view.camera for view in self.views)
 
     def silhouettes(self, frame: int) -> tuple[Silhouette, ...]:
-        """What the cameras see in ``frame``."""
-        return tuple(view.silhouette(frame) for view in self.views)
+        """What the cameras see in ``frame``; read side by side, as each has its own footage."""
+        with ThreadPoolExecutor(len(self.views)) as pool:
+            return tuple(pool.map(lambda view: view.silhouette(frame), self.views))
 
     def reduced(self, frames: Sequence[int]) -> "Views":
         """The views at the resolution that fits the performer's size in ``frames``."""

@@ -3,8 +3,7 @@
 import cv2
 import numpy as np
 import pytest
-from silhouette_mocap.core.errors import MocapError
-from silhouette_mocap.core.motion.overlay import Tile, coloured, overlay_picture, write_overlay
+from silhouette_mocap.core.motion.overlay import OverlayVideo, Tile, coloured, overlay_picture
 from silhouette_mocap.core.silhouettes.silhouette import Silhouette
 
 
@@ -31,21 +30,21 @@ def test_views_of_all_sizes_are_put_side_by_side():
     assert picture.shape[1] == 2 * 480
 
 
-def test_a_video_holds_every_picture_and_appears_only_when_it_is_whole(tmp_path):
+def test_a_video_holds_every_picture_in_the_order_of_frames(tmp_path):
     path = tmp_path / "overlay.mp4"
-
-    def pictures(count):
-        for number in range(count):
-            yield np.full((48, 64, 3), 40 * number, np.uint8)
-            assert not path.exists()
-
-    write_overlay(path, 25.0, pictures(5))
-    video = cv2.VideoCapture(str(path))
-    levels = [video.read()[1].mean() for _ in range(5)]
-    np.testing.assert_allclose(levels, [0, 40, 80, 120, 160], atol=6)
-    assert not video.read()[0] and [p.name for p in tmp_path.iterdir()] == ["overlay.mp4"]
+    with OverlayVideo(path, 25.0) as video:
+        for frame in (12, 13, 14, 11, 9):
+            video.add(frame, np.full((48, 64, 3), 15 * frame, np.uint8))
+        assert not path.exists()
+        video.write()
+    stored = cv2.VideoCapture(str(path))
+    levels = [stored.read()[1].mean() for _ in range(5)]
+    np.testing.assert_allclose(levels, [135, 165, 180, 195, 210], atol=6)
+    assert not stored.read()[0] and [p.name for p in tmp_path.iterdir()] == ["overlay.mp4"]
 
 
-def test_a_folder_that_is_missing_is_one_line(tmp_path):
-    with pytest.raises(MocapError, match="cannot be written"):
-        write_overlay(tmp_path / "no" / "o.mp4", 25.0, iter([np.zeros((48, 64, 3), np.uint8)]))
+def test_a_video_that_is_given_up_leaves_nothing_behind(tmp_path):
+    with pytest.raises(KeyboardInterrupt), OverlayVideo(tmp_path / "o.mp4", 25.0) as video:
+        video.add(0, np.zeros((48, 64, 3), np.uint8))
+        raise KeyboardInterrupt
+    assert not list(tmp_path.iterdir())

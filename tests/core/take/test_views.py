@@ -148,7 +148,7 @@ def test_masks_and_plates_are_written_where_they_are_found_again(folder):
     path = make_plate(take, "cam_01", PlateRecipe(), (None, None))
     assert path == folder / "cam_01_plate.png"
     qualities = write_take_masks(open_views(take), folder / "made", Silence())
-    assert [(q.frames, q.empty) for q in qualities] == [(4, 0)] * 5
+    assert [(q.frames, q.empty) for q in qualities.values()] == [(4, 0)] * 5
     take = changed(folder, ('extraction = "difference"', ""), ('plate = "{camera}_plate.png"', ""),
                    ('video = "video/', 'silhouettes = "made/'))  # fmt: skip
     assert open_views(take).silhouettes(1)[2].foreground.any()
