@@ -74,9 +74,13 @@ class Undistortion:
         result[self._unobserved] = 0
         return result
 
-    @cached_property
+    @property
     def observed(self) -> np.ndarray:
         """(H, W) bool, read-only: False where ``camera`` has pixels without a source pixel."""
+        return self._observed
+
+    @cached_property
+    def _observed(self) -> np.ndarray:
         width, height = self.camera.size
         if self.is_identity:
             observed = np.ones((height, width), bool)

@@ -24,14 +24,17 @@ class Footage(Protocol):
     Attributes:
         camera: the camera's name.
         size: (width, height) of every picture in px.
-        fps: frames per second, where the file says so.
         lossy: whether grey values may be off by the compression.
     """
 
     camera: str
     size: tuple[int, int]
-    fps: float | None
     lossy: bool
+
+    @property
+    def fps(self) -> float | None:
+        """Frames per second, where the file says so."""
+        ...
 
     @property
     def frames(self) -> Sequence[int]:

@@ -75,7 +75,7 @@ def write_picture(path: Path, picture: np.ndarray, flags: tuple[int, ...] = ()) 
     try:
         coded, data = cv2.imencode(path.suffix, picture, flags)
     except cv2.error:
-        coded = False
+        coded, data = False, np.zeros(0, np.uint8)
     if not coded:
         raise MocapError("is no picture format that can be written", "use .png", file=path)
     try:

@@ -37,15 +37,20 @@ class Video:
         self.fps = float(fps) if 0 < fps < 10_000 else None
         self._next = 0
         self._held: tuple[int, np.ndarray] | None = None
-        self.size = self.picture(0).shape[1::-1]
+        height, width = self.picture(0).shape[:2]
+        self.size = (width, height)
 
-    @cached_property
+    @property
     def frames(self) -> Sequence[int]:
         """The frame numbers that exist; the whole file is decoded once to count them."""
+        return range(self._count)
+
+    @cached_property
+    def _count(self) -> int:
         capture, count = self._opened(), 0
         while capture.grab():
             count += 1
-        return range(count)
+        return count
 
     def picture(self, frame: int) -> np.ndarray:
         """(H, W, 3) uint8 BGR picture of one frame.

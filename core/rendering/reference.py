@@ -159,9 +159,10 @@ class ReferenceEvaluator:
             segments = range(len(self.body.segment_names))
         pictures = []
         for view, camera in enumerate(self.cameras):
-            picture = np.zeros(camera.size[::-1], bool)
+            width, height = camera.size
+            picture = np.zeros((height, width), bool)
             for corners in self._snapped_triangles(pose, view, segments):
-                rows, columns, covered = covered_pixels(corners, picture.shape)
+                rows, columns, covered = covered_pixels(corners, (height, width))
                 picture[rows, columns] |= covered
             pictures.append(picture)
         return tuple(pictures)

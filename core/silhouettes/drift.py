@@ -54,7 +54,7 @@ def _line(x: np.ndarray, y: np.ndarray) -> tuple[float, float, float]:
     clipped = (y <= 2) | (y >= 253) | (x <= 2) | (x >= 253)
     if (~clipped).sum() >= 100:
         x, y = x[~clipped], y[~clipped]
-    gain, offset = 1.0, float(np.median(y - x))
+    gain, offset, spread = 1.0, float(np.median(y - x)), _FLOOR
     for _ in range(_ROUNDS):
         residual = y - gain * x - offset
         spread = max(1.4826 * float(np.median(np.abs(residual))), _FLOOR)

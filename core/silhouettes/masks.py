@@ -94,7 +94,7 @@ def write_mask_video(path: Path, masks: Iterable[np.ndarray], fps: float) -> int
     try:
         for mask in masks:
             if video is None:
-                code = cv2.VideoWriter_fourcc(*"mp4v")
+                code = cv2.VideoWriter.fourcc(*"mp4v")
                 video = cv2.VideoWriter(str(path), code, fps, mask.shape[::-1])
                 if not video.isOpened():
                     raise MocapError("cannot be written as a video", "use .mp4", file=path)

@@ -50,7 +50,9 @@ def plate_from(footage: Footage, frames: tuple[int, int], recipe: PlateRecipe) -
         still = colour_picture(read_picture(recipe.still, footage.camera))
         reference = np.clip(np.round(plate.mean), 0, 255).astype(np.uint8)
         still = registered(still, reference, recipe.still).astype(np.float32)
-        plate = _with_still(plate, pictures, still, _trusted(recipe, still.shape[:2]))
+        plate = _with_still(
+            plate, pictures, still, _trusted(recipe, (still.shape[0], still.shape[1]))
+        )
     for patch in recipe.patches:
         plate = _with_patch(plate, footage, patch)
     return plate

@@ -47,9 +47,13 @@ def registered(still: np.ndarray, reference: np.ndarray, file: Path) -> np.ndarr
 
 
 def _similarity(still: np.ndarray, reference: np.ndarray) -> np.ndarray | None:
-    sift = cv2.SIFT_create(_FEATURES)
-    spots, words = sift.detectAndCompute(cv2.cvtColor(still, cv2.COLOR_BGR2GRAY), None)
-    targets, target_words = sift.detectAndCompute(cv2.cvtColor(reference, cv2.COLOR_BGR2GRAY), None)
+    sift = cv2.SIFT.create(_FEATURES)
+    (spots, words), (targets, target_words) = (
+        sift.detectAndCompute(
+            cv2.cvtColor(picture, cv2.COLOR_BGR2GRAY), np.full(picture.shape[:2], 255, np.uint8)
+        )
+        for picture in (still, reference)
+    )
     if words is None or target_words is None or min(len(words), len(target_words)) < _FEWEST:
         return None
     pairs = cv2.BFMatcher().knnMatch(words, target_words, k=2)

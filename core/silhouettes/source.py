@@ -86,9 +86,10 @@ class SilhouetteSource:
         if self.rectifier is None:
             return Silhouette(mask & observed, observed)
         # an ignored neighbour that enters the interpolation at all spoils a pixel
-        trusted = self._rectified(observed) == 255
+        trusted = _rectified(self.rectifier, observed) == 255
         observed = trusted & self.rectifier.observed
-        return Silhouette((self._rectified(mask) >= 128) & observed, observed)
+        return Silhouette((_rectified(self.rectifier, mask) >= 128) & observed, observed)
 
-    def _rectified(self, mask: np.ndarray) -> np.ndarray:
-        return self.rectifier.undistorted(np.where(mask, np.uint8(255), np.uint8(0)))
+
+def _rectified(rectifier: Rectifier, mask: np.ndarray) -> np.ndarray:
+    return rectifier.undistorted(np.where(mask, np.uint8(255), np.uint8(0)))

@@ -113,7 +113,11 @@ def _around(mask: np.ndarray) -> tuple[slice, slice] | None:
     rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
     if not len(rows):
         return None
-    return tuple(slice(max(x[0] - _MARGIN_PX, 0), x[-1] + _MARGIN_PX + 1) for x in (rows, columns))
+    return _with_margin(rows), _with_margin(columns)
+
+
+def _with_margin(covered: np.ndarray) -> slice:
+    return slice(max(covered[0] - _MARGIN_PX, 0), covered[-1] + _MARGIN_PX + 1)
 
 
 def against_shadow(

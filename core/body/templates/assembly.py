@@ -57,7 +57,7 @@ def assembled(plan: Plan, proportions: Proportions, levels: tuple[Level, ...]) -
     return Body(
         name=plan.name,
         joint_names=names,
-        parents=parents,
+        parents=np.array(parents),
         offsets=offsets,
         tails=np.array([places[joint.tail] for joint in joints]) - origins,
         dofs=dofs,
@@ -68,7 +68,7 @@ def assembled(plan: Plan, proportions: Proportions, levels: tuple[Level, ...]) -
             surface(proportions, tuple((s.name, s.joint, s.pieces) for s in segments), level)
             for level in levels
         ),
-        point_joints=point_joints,
+        point_joints=np.array(point_joints),
         point_offsets=point_places - origins[point_joints],
         parts=tuple(_part(search, names, parents, dofs, carriers) for search in searches),
     )
@@ -111,11 +111,15 @@ def _dofs(joints: tuple[Joint, ...]) -> Dofs:
     units = [1.0 if row.kind == DofKind.TRANSLATION else np.pi / 180 for _, row in rows]
     return Dofs(
         names=tuple(row.name for _, row in rows),
-        joints=[index for index, _ in rows],
-        kinds=[row.kind for _, row in rows],
-        axes=[row.axis for _, row in rows],
-        limits=[np.multiply(row.limits, unit) for (_, row), unit in zip(rows, units, strict=True)],
-        rest_spread=[row.spread * unit for (_, row), unit in zip(rows, units, strict=True)],
+        joints=np.array([index for index, _ in rows]),
+        kinds=np.array([row.kind for _, row in rows]),
+        axes=np.array([row.axis for _, row in rows]),
+        limits=np.array(
+            [np.multiply(row.limits, unit) for (_, row), unit in zip(rows, units, strict=True)]
+        ),
+        rest_spread=np.array(
+            [row.spread * unit for (_, row), unit in zip(rows, units, strict=True)]
+        ),
         directions=tuple(row.direction for _, row in rows),
     )
 

@@ -12,7 +12,12 @@ from ...geometry.loft import Profile
 def default_profiles() -> dict[str, Profile]:
     """Name of a surface piece -> its cross-sections."""
     return {
-        name: Profile(ends, [row[0] for row in rows], np.array([row[1:] for row in rows]) / 1000, n)
+        name: Profile(
+            ends,
+            np.array([row[0] for row in rows]),
+            np.array([row[1:] for row in rows]) / 1000,
+            n,
+        )
         for name, (ends, n, rows) in _TABLES.items()
     }
 

@@ -67,8 +67,8 @@ def mirrored(joint: Joint) -> Joint:
     """The right joint of a left one."""
     flip = np.array([1.0, -1.0, -1.0])
     rows = tuple(replace(r, name=on_the_right(r.name), axis=r.axis * flip) for r in joint.rows)
-    names = (on_the_right(text) for text in (joint.name, joint.parent, joint.tail))
-    return Joint(*names, rows, joint.cone)
+    name, parent, tail = (on_the_right(text) for text in (joint.name, joint.parent, joint.tail))
+    return Joint(name, parent, tail, rows, joint.cone)
 
 
 def turning(bone: np.ndarray, towards: np.ndarray) -> np.ndarray:

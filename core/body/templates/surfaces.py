@@ -80,7 +80,10 @@ def surface(
         vertex_starts.append(sum(map(len, vertices)))
         triangle_starts.append(sum(map(len, triangles)))
     return Surface(
-        np.concatenate(vertices), np.concatenate(triangles), vertex_starts, triangle_starts
+        np.concatenate(vertices),
+        np.concatenate(triangles),
+        np.array(vertex_starts),
+        np.array(triangle_starts),
     )
 
 
