@@ -120,13 +120,18 @@ def _best_heading(
     poses = np.stack([_turned(pose, body, heading) for heading in ring])
     weights = tracker.evaluator.prepared(xor_weight_maps(silhouettes))
     rough = tracker.evaluator.energies(weights, poses).sum(axis=1)
-    best = ring[int(np.argmin(rough))]
-    starts = [_turned(pose, body, best + quarter * np.pi / 2) for quarter in range(4)]
+    nearest = ring[int(np.argmin(rough))]
+    starts = [_turned(pose, body, nearest + quarter * np.pi / 2) for quarter in range(4)]
     fits = sorted(
         (tracker.fit(silhouettes, start, start) for start in starts), key=lambda fit: fit.energy
     )
-    margin = fits[1].energy / max(fits[0].energy, 1.0) - 1.0
-    return fits[0].pose, f"the heading won by {margin:.0%} over the next of four"
+    yaw = _yaw_dof(body)
+    best = fits[0]
+    others = [fit for fit in fits if np.cos(fit.pose[yaw] - best.pose[yaw]) < np.cos(np.pi / 4)]
+    if not others:
+        return best.pose, "all four headings led to the same one"
+    margin = others[0].energy / max(best.energy, 1.0) - 1.0
+    return best.pose, f"the next best heading is {margin:.0%} worse"
 
 
 def _matched_extent(

@@ -9,7 +9,10 @@ import numpy as np
 
 from ..cameras.camera import Camera
 from ..errors import MocapError
+from ..silhouettes.cleaning import Cleaning, cleaned
 from ..silhouettes.silhouette import Silhouette
+
+_REWEIGHTINGS = 20
 
 
 def body_centre(cameras: tuple[Camera, ...], silhouettes: tuple[Silhouette, ...]) -> np.ndarray:
@@ -18,24 +21,36 @@ def body_centre(cameras: tuple[Camera, ...], silhouettes: tuple[Silhouette, ...]
     Raises:
         MocapError: fewer than two views show anything.
     """
-    normal, right = np.zeros((3, 3)), np.zeros(3)
-    views = 0
+    centres, directions = [], []
     for camera, silhouette in zip(cameras, silhouettes, strict=True):
-        rows, columns = np.nonzero(silhouette.foreground & silhouette.observed)
-        if not len(rows):
-            continue
-        views += 1
-        ray = camera.rotation.T @ np.linalg.solve(camera.matrix, [columns.mean(), rows.mean(), 1.0])
-        ray /= np.linalg.norm(ray)
-        across = np.eye(3) - np.outer(ray, ray)
-        normal += across
-        right += across @ camera.centre
-    if views < 2:
+        rows, columns = np.nonzero(main_patch(silhouette))
+        if len(rows):
+            pixel = [columns.mean(), rows.mean(), 1.0]
+            ray = camera.rotation.T @ np.linalg.solve(camera.matrix, pixel)
+            centres.append(camera.centre)
+            directions.append(ray / np.linalg.norm(ray))
+    if len(centres) < 2:
         raise MocapError(
-            f"only {views} of {len(cameras)} views show the performer in the initial pose",
+            f"only {len(centres)} of {len(cameras)} views show the performer in the initial pose",
             "give other initial_pose frames or better silhouettes",
         )
-    return np.linalg.solve(normal, right)
+    return _nearest_to_rays(np.array(centres), np.array(directions))
+
+
+def _nearest_to_rays(centres: np.ndarray, directions: np.ndarray) -> np.ndarray:
+    """(3,) point with the least sum of distances to rays (V, 3), by reweighted least squares.
+
+    A sum of distances, not of squares, lets a camera that shows something else be outvoted.
+    """
+    across = np.eye(3) - directions[:, :, None] * directions[:, None, :]
+    weights = np.ones(len(centres))
+    for _ in range(_REWEIGHTINGS):
+        weighted = weights[:, None, None] * across
+        right = np.einsum("vab,vb->a", weighted, centres)
+        point = np.linalg.solve(weighted.sum(axis=0), right)
+        distances = np.linalg.norm(np.einsum("vab,vb->va", across, point - centres), axis=1)
+        weights = 1.0 / np.maximum(distances, 1e-3)
+    return point
 
 
 def standing_height(
@@ -66,6 +81,11 @@ def standing_height(
 
 
 def row_span(silhouette: Silhouette) -> tuple[int, int] | None:
-    """First and last row of the silhouette's px, or None if there are none."""
-    rows = np.flatnonzero((silhouette.foreground & silhouette.observed).any(axis=1))
+    """First and last row of the silhouette's main patch, or None if it is empty."""
+    rows = np.flatnonzero(main_patch(silhouette).any(axis=1))
     return (int(rows[0]), int(rows[-1])) if len(rows) else None
+
+
+def main_patch(silhouette: Silhouette) -> np.ndarray:
+    """(H, W) bool: the largest patch of foreground and those of at least half its size."""
+    return cleaned(silhouette.foreground & silhouette.observed, Cleaning(0.5, 0.0)).mask

@@ -74,6 +74,23 @@ def test_centre_and_height_of_a_standing_body():
     )
 
 
+def test_one_camera_that_shows_something_else_is_outvoted():
+    body, truth = standing("performer", "A", 1.0, 1.0)
+    cameras = small_studio()
+    silhouettes = filmed(body, cameras, truth)
+    other = np.zeros((120, 160), bool)
+    other[10:110, 5:25] = True
+    fooled = (Silhouette(other, np.ones_like(other)), *silhouettes[1:])
+    speckled = [Silhouette(s.foreground.copy(), s.observed) for s in fooled]
+    for silhouette in speckled[1:]:
+        silhouette.foreground[2, 30] = True
+    centre = body_centre(cameras, tuple(speckled))
+    assert np.abs(centre[:2] - truth[:2]).max() < 0.05
+    assert standing_height(cameras, tuple(speckled), centre, 0.0) == pytest.approx(
+        rest_height(body), abs=0.06
+    )
+
+
 def test_silhouettes_that_show_nobody_are_refused():
     cameras = small_studio(2)
     nothing = np.zeros((120, 160), bool)
