@@ -1,7 +1,7 @@
 """Compiles the native kernel with zig, for this machine or across; standard library only.
 
-Run ``python core/native/build.py [TARGET] [FOLDER]`` after ``pip install ziglang``. One source,
-``coverage.c``, is compiled once per code path; contraction is off, so that all paths give the same
+Run ``python core/native/build.py [TARGET] [FOLDER]`` after ``pip install ziglang``. What draws is
+compiled once per code path; contraction is off, so that all paths give the same
 bits. The library carries a fingerprint of its sources, by which a stale one is recognised.
 """
 
@@ -55,7 +55,7 @@ def wheel_platform(target: str) -> str:
 
 
 def fingerprint(folder: Path = SOURCES) -> str:
-    """A digest of the kernel's sources, the same whatever the line ends; empty where there are none."""
+    """A digest of the kernel's sources, whatever their line ends; empty where there are none."""
     files = sorted([*folder.glob("*.c"), *folder.glob("*.h")], key=lambda path: path.name)
     if not files:
         return ""
@@ -68,12 +68,13 @@ def fingerprint(folder: Path = SOURCES) -> str:
 def _objects(target: str) -> list[tuple[str, str, tuple[str, ...]]]:
     """(object, source, flags) of everything that is linked."""
     paths = PATHS if "x86_64" in target else {"base": ()}
-    whole: list[tuple[str, str, tuple[str, ...]]] = [
+    whole = [
         (f"{name}.o", f"{name}.c", ()) for name in ("kernel", "processor", "transforms", "weights")
     ]
     return whole + [
-        (f"coverage_{path}.o", "coverage.c", (f"-DSM_PATH={path}", *flags))
+        (f"{name}_{path}.o", f"{name}.c", (f"-DSM_PATH={path}", *flags))
         for path, flags in paths.items()
+        for name in ("coverage", "contours", "triangles")
     ]
 
 

@@ -30,33 +30,62 @@ static int64_t largest(const int32_t *starts, int32_t n) {
     return most;
 }
 
-static size_t take(size_t *at, int64_t count, size_t size) {
+/* The records of segment s run from records_from(s) to records_from(s + 1). */
+static int32_t records_from(const sm_body *body, int32_t s) { return body->run_starts[body->cluster_starts[s]]; }
+
+static int64_t most_records(const sm_body *body) {
+    int64_t most = 0;
+    for (int32_t s = 0; s < body->segments; s++) {
+        int64_t count = (int64_t)records_from(body, s + 1) - records_from(body, s);
+        if (count > most) most = count;
+    }
+    return most;
+}
+
+static void *part(void *base, size_t *at, int64_t count, size_t size) {
     size_t start = *at;
     *at = (start + (size_t)count * size + 63) & ~(size_t)63;
-    return start;
+    return (void *)((((uintptr_t)base + 63) & ~(uintptr_t)63) + start);
 }
 
 size_t sm_cut(const sm_body *body, const sm_views *views, void *base, sm_work *work) {
-    int64_t height = 0, words = 0, vertices = largest(body->vertex_starts, body->segments);
-    int64_t faces = largest(body->face_starts, body->segments), records = largest(body->record_starts, body->segments);
-    for (int32_t v = 0; v < views->views; v++) {
-        int64_t count = views->word_starts[v + 1] - views->word_starts[v];
+    int64_t height = 0, vertices = largest(body->vertex_starts, body->segments);
+    int64_t clusters = largest(body->cluster_starts, body->segments), faces = SM_CLUSTER * clusters;
+    int64_t records = most_records(body);
+    for (int32_t v = 0; v < views->views; v++)
         if (views->sizes[2 * v + 1] > height) height = views->sizes[2 * v + 1];
-        if (count > words) words = count;
-    }
-    char *bytes = (char *)(((uintptr_t)base + 63) & ~(uintptr_t)63);
     size_t at = 0;
-    work->transforms = (double *)(bytes + take(&at, 12 * (int64_t)body->joints, sizeof(double)));
-    work->needed = (uint8_t *)(bytes + take(&at, body->joints, 1));
-    work->qx = (int32_t *)(bytes + take(&at, vertices, sizeof(int32_t)));
-    work->qy = (int32_t *)(bytes + take(&at, vertices, sizeof(int32_t)));
-    work->signs = (int8_t *)(bytes + take(&at, faces + 1, 1));
-    work->found = (int32_t *)(bytes + take(&at, 2 * (records + 1), sizeof(int32_t)));
-    work->counts = (uint8_t *)(bytes + take(&at, height, 1));
-    work->slots = (int32_t *)(bytes + take(&at, height * SM_SLOTS, sizeof(int32_t)));
-    work->rows = (uint64_t *)(bytes + take(&at, words, sizeof(uint64_t)));
-    if (base) memset(work->counts, 0, (size_t)height);
+    work->transforms = part(base, &at, 12 * (int64_t)body->joints * views->views, sizeof(double));
+    work->needed = part(base, &at, body->joints, 1);
+    work->facing = part(base, &at, faces + 2, 1);
+    work->glances = part(base, &at, clusters, 1);
+    work->runs = part(base, &at, clusters + 1, sizeof(int32_t));
+    work->found = part(base, &at, records + 1, sizeof(int32_t));
+    work->unknown = part(base, &at, faces + 1, sizeof(int32_t));
+    work->places = part(base, &at, vertices, sizeof(int32_t));
+    work->wanted = part(base, &at, vertices + 1, sizeof(int32_t));
+    work->qx = part(base, &at, vertices, sizeof(int32_t));
+    work->qy = part(base, &at, vertices, sizeof(int32_t));
+    work->counts = part(base, &at, height, 1);
+    work->slots = part(base, &at, height * SM_SLOTS, sizeof(int32_t));
+    work->pictures = part(base, &at, views->views, sizeof(sm_picture));
+    uint64_t *rows = part(base, &at, views->word_starts[views->views], sizeof(uint64_t));
+    if (!base) return at + 64;
+    memset(work->counts, 0, (size_t)height);
+    for (int32_t v = 0; v < views->views; v++) {
+        int32_t width = views->sizes[2 * v], words = (width + 63) >> 6;
+        work->pictures[v] = (sm_picture){width, words, 0, views->sizes[2 * v + 1], 0, 0, rows + views->word_starts[v]};
+    }
     return at + 64;
+}
+
+/* Takes one candidate's transforms from its pose or, where per_view, its V poses; returns the next. */
+static const double *take_pose(const sm_body *body, const sm_views *views, const double *pose, int32_t per_view,
+                               sm_work *work) {
+    work->stride = per_view ? 12 * (size_t)body->joints : 0;
+    for (int32_t v = 0; v < (per_view ? views->views : 1); v++, pose += body->dofs)
+        sm_pose_transforms(body, pose, work->needed, work->transforms + work->stride * (size_t)v);
+    return pose;
 }
 
 size_t sm_scratch(const sm_body *body, const sm_views *views) {
@@ -68,12 +97,13 @@ static int32_t check_body(const sm_body *body) {
     if (body->joints < 1 || body->dofs < 0 || body->segments < 1) return SM_SIZE;
     if (body->dof_starts[0] != 0 || body->dof_starts[body->joints] != body->dofs) return SM_SIZE;
     if (largest(body->dof_starts, body->joints) < 0 || largest(body->vertex_starts, body->segments) < 0 ||
-        largest(body->face_starts, body->segments) < 0 || largest(body->record_starts, body->segments) < 0)
+        largest(body->cluster_starts, body->segments) < 0)
         return SM_SIZE;
     int32_t n = body->segments;
-    if (body->vertex_starts[0] || body->face_starts[0] || body->record_starts[0]) return SM_SIZE;
-    if (body->vertex_starts[n] != body->vertices || body->face_starts[n] != body->faces ||
-        body->record_starts[n] != body->records)
+    if (body->vertex_starts[0] || body->cluster_starts[0] || body->vertex_starts[n] != body->vertices ||
+        body->cluster_starts[n] != body->clusters || body->clusters < 0 || largest(body->run_starts, body->clusters) < 0 ||
+        body->run_starts[0] || body->run_starts[body->clusters] != body->records || body->records % SM_RUN ||
+        body->clusters > INT32_MAX / (6 * SM_CLUSTER))
         return SM_SIZE;
     for (int32_t j = 0; j < body->joints; j++) {
         if (body->parents[j] < -1 || body->parents[j] >= j) return SM_INDEX;
@@ -93,18 +123,25 @@ static int in_range(const int32_t *values, int64_t n, int32_t end) {
     return 1;
 }
 
+static int32_t check_segment(const sm_body *body, int32_t s) {
+    int32_t vertices = body->vertex_starts[s + 1] - body->vertex_starts[s];
+    int32_t first = body->cluster_starts[s], clusters = body->cluster_starts[s + 1] - first;
+    int32_t record = records_from(body, s), records = records_from(body, s + 1) - record;
+    int64_t faces = SM_CLUSTER * (int64_t)clusters;
+    for (int32_t c = first; c < first + clusters; c++)
+        if (body->run_starts[c] % SM_RUN) return SM_SIZE;
+    if (!in_range(body->corners + 3 * SM_CLUSTER * (size_t)first, 3 * faces, vertices) ||
+        !in_range(body->record_vertices + 2 * (size_t)record, 2 * (int64_t)records, vertices) ||
+        !in_range(body->record_faces + 2 * (size_t)record, 2 * (int64_t)records, (int32_t)faces + 2))
+        return SM_INDEX;
+    return SM_OK;
+}
+
 static int32_t check_mesh(const sm_body *body) {
     for (int32_t s = 0; s < body->segments; s++) {
-        int32_t vertices = body->vertex_starts[s + 1] - body->vertex_starts[s];
-        int32_t first = body->face_starts[s], faces = body->face_starts[s + 1] - first;
-        int32_t record = body->record_starts[s], records = body->record_starts[s + 1] - record;
-        if (!in_range(body->corners + 3 * (size_t)first, 3 * (int64_t)faces, vertices) ||
-            !in_range(body->record_vertices + 2 * (size_t)record, 2 * (int64_t)records, vertices) ||
-            !in_range(body->record_faces + 2 * (size_t)record, 2 * (int64_t)records, faces + 1))
-            return SM_INDEX;
+        int32_t error = check_segment(body, s);
+        if (error) return error;
     }
-    for (int64_t i = 0; i < 2 * (int64_t)body->records; i++)
-        if (body->record_signs[i] < -1 || body->record_signs[i] > 1) return SM_INDEX;
     return in_range(body->segment_joints, body->segments, body->joints) ? SM_OK : SM_INDEX;
 }
 
@@ -133,7 +170,8 @@ static int32_t begin(const sm_body *body, const sm_views *views, int64_t n, cons
     if (n < 0 || count < 0) return SM_SIZE;
     if (!in_range(segments, count, body->segments)) return SM_INDEX;
     if (!path_of(views)) return SM_PROCESSOR;
-    if (!scratch || bytes < sm_cut(body, views, scratch, work)) return SM_SCRATCH;
+    if (!scratch || bytes < sm_scratch(body, views)) return SM_SCRATCH;
+    sm_cut(body, views, scratch, work);
     sm_need(body, segments, count, work);
     return SM_OK;
 }
@@ -152,20 +190,16 @@ int32_t sm_energies(const sm_body *body, const sm_views *views, const sm_weights
     int32_t error = begin(body, views, n, segments, count, scratch, bytes, &work);
     if (error) return error;
     const sm_path *path = path_of(views);
+    for (int32_t v = 0; v < views->views; v++) {
+        work.pictures[v].top = weights->rows[2 * v];
+        work.pictures[v].bottom = weights->rows[2 * v + 1];
+    }
     for (int64_t i = 0; i < n; i++) {
-        for (int32_t v = 0; v < views->views; v++) {
-            if (per_view || v == 0) {
-                sm_pose_transforms(body, poses, work.needed, work.transforms);
-                poses += body->dofs;
-            }
-            const int32_t *rows = weights->rows + 2 * v;
-            *out = weights->constants[v];
-            if (rows[0] < rows[1]) {
-                path->draw(body, views, v, segments, count, rows[0], rows[1], &work);
-                *out += path->sum(views, weights, v, &work);
-            }
-            out++;
-        }
+        poses = take_pose(body, views, poses, per_view, &work);
+        for (int32_t v = 0; v < views->views; v++) work.pictures[v].y0 = work.pictures[v].y1 = 0;
+        path->draw(body, views, segments, count, &work);
+        for (int32_t v = 0; v < views->views; v++)
+            *out++ = weights->constants[v] + path->sum(views, weights, v, &work.pictures[v]);
     }
     return SM_OK;
 }
@@ -176,11 +210,13 @@ int32_t sm_silhouettes(const sm_body *body, const sm_views *views, const double 
     int32_t error = begin(body, views, 1, segments, count, scratch, bytes, &work);
     if (error) return error;
     memset(out, 0, 8 * (size_t)views->word_starts[views->views]);
+    take_pose(body, views, pose, per_view, &work);
+    path_of(views)->draw(body, views, segments, count, &work);
     for (int32_t v = 0; v < views->views; v++) {
-        if (per_view || v == 0) sm_pose_transforms(body, pose + (size_t)v * body->dofs, work.needed, work.transforms);
-        path_of(views)->draw(body, views, v, segments, count, 0, views->sizes[2 * v + 1], &work);
-        size_t words = (size_t)((views->sizes[2 * v] + 63) >> 6), start = words * work.y0;
-        memcpy(out + views->word_starts[v] + start, work.rows + start, 8 * words * (size_t)(work.y1 - work.y0));
+        const sm_picture *picture = &work.pictures[v];
+        size_t words = (size_t)picture->words, start = words * picture->y0;
+        memcpy(out + views->word_starts[v] + start, picture->rows + start,
+               8 * words * (size_t)(picture->y1 - picture->y0));
     }
     return SM_OK;
 }
@@ -215,13 +251,8 @@ int32_t sm_bounds(const sm_body *body, const sm_views *views, const double *pose
     int32_t error = begin(body, views, n, segments, count, scratch, bytes, &work);
     if (error) return error;
     for (int64_t i = 0; i < n; i++) {
-        for (int32_t v = 0; v < views->views; v++, out += 4) {
-            if (per_view || v == 0) {
-                sm_pose_transforms(body, poses, work.needed, work.transforms);
-                poses += body->dofs;
-            }
-            bound(body, views, v, segments, count, out, &work);
-        }
+        poses = take_pose(body, views, poses, per_view, &work);
+        for (int32_t v = 0; v < views->views; v++, out += 4) bound(body, views, v, segments, count, out, &work);
     }
     return SM_OK;
 }
@@ -230,8 +261,10 @@ int32_t sm_snapped(const sm_body *body, const sm_views *views, const double *pos
                    size_t bytes) {
     sm_work work;
     if (!path_of(views)) return SM_PROCESSOR;
-    if (!scratch || bytes < sm_cut(body, views, scratch, &work)) return SM_SCRATCH;
+    if (!scratch || bytes < sm_scratch(body, views)) return SM_SCRATCH;
+    sm_cut(body, views, scratch, &work);
     sm_pose_transforms(body, pose, 0, work.transforms);
+    work.stride = 0;
     for (int32_t v = 0; v < views->views; v++) {
         for (int32_t s = 0; s < body->segments; s++) {
             path_of(views)->snap(body, views, v, s, &work);

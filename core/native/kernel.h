@@ -23,7 +23,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define SM_ABI 1
+#define SM_ABI 2
+#define SM_CLUSTER 16 /* faces to a cluster */
+#define SM_RUN 8      /* the records of a cluster are filled up to a multiple */
 #define SM_GUARD_PX 16000.0 /* 256 times this fits the snapped coordinates (22 bits and a sign) */
 
 #if defined(_WIN32)
@@ -36,9 +38,11 @@ enum { SM_OK = 0, SM_SIZE = 1, SM_INDEX = 2, SM_SCRATCH = 3, SM_PROCESSOR = 4 };
 enum { SM_TRANSLATION = 0, SM_HINGE = 1, SM_SWING = 2 };
 enum { SM_PLANES = 0, SM_MAPS = 1 };
 
-/* A body at one level of detail: J joints, D degrees of freedom, S segments. */
+/* A body at one level of detail: J joints, D degrees of freedom, S segments. Triangles lie in
+ * clusters of SM_CLUSTER, each cluster's in one segment (its last one repeated to fill up), so that
+ * most of them are known to face the camera, or not, at one glance. */
 typedef struct {
-    int32_t joints, dofs, segments, vertices, faces, records;
+    int32_t joints, dofs, segments, vertices, clusters, records;
     const int32_t *parents;         /* (J), parents before children, -1 for the root */
     const double *offsets;          /* (J, 3) m, rest position in the parent's space */
     const int32_t *dof_starts;      /* (J + 1), joint j is moved by the rows [j] to [j + 1] */
@@ -47,14 +51,20 @@ typedef struct {
     const int32_t *segment_joints;  /* (S), the joint that carries the segment */
     const double *spheres;          /* (S, 4) m, centre and radius round the vertices, joint's space */
     const int32_t *vertex_starts;   /* (S + 1) */
-    const int32_t *face_starts;     /* (S + 1) */
-    const int32_t *record_starts;   /* (S + 1) */
+    const int32_t *cluster_starts;  /* (S + 1) */
+    const int32_t *run_starts;      /* (clusters + 1) the edge records that a cluster owns;
+                                       multiples of SM_RUN */
     const float *x, *y, *z;         /* (vertices) m, in the joint's space */
     const int32_t *corners;         /* (faces, 3) vertices, counted from the segment's first */
+    const float *face_planes;       /* (6, faces) normal n, n . p, two factors of the margin within
+                                       which the snapped triangle may face either way */
+    const float *cluster_planes;    /* (8, clusters) mean normal m, m . q, max |n - m|,
+                                       max |n . (p - q)|, largest factors of the margin: over all
+                                       faces on either side of the cluster's records */
     const int32_t *record_vertices; /* (records, 2) p and q of an edge, counted likewise */
-    const int32_t *record_faces;    /* (records, 2) two faces that share the edge, counted likewise;
-                                       the segment's number of faces stands for "no face" */
-    const int8_t *record_signs;     /* (records, 2) +1: the face runs from p to q, -1: from q to p */
+    const int32_t *record_faces;    /* (records, 2) a face that runs from p to q and one that runs
+                                       from q to p, counted likewise; the segment's number of faces
+                                       stands for "no face", twice one more for "no record" */
 } sm_body;
 
 /* V pinhole cameras, each with its own size. Row y of view v is word_widths[v] words from
@@ -67,6 +77,7 @@ typedef struct {
     const double *projections;  /* (V, 3, 4) world metres to homogeneous px */
     const double *planes;       /* (V, 9, 4) unit planes in the world, positive inside: near, four
                                    sides of the guard region, four sides of the picture */
+    const double *optics;       /* (V, 5) centre in the world, det K, largest stretch of K in px */
     const int64_t *word_starts; /* (V + 1) */
     const int64_t *map_starts;  /* (V + 1), pixels, H * W each */
     const int64_t *sum_starts;  /* (V + 1), prefix sums, H * (W + 1) each */

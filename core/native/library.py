@@ -12,7 +12,7 @@ from pathlib import Path
 from ..errors import MocapError
 from .build import fingerprint, host_target, library_name
 
-ABI = 1
+ABI = 2
 PLANES, MAPS = 0, 1
 FOLDER = Path(__file__).resolve().parent
 BUILD = f'build it: python -m pip install ziglang, then python "{FOLDER / "build.py"}"'
@@ -28,13 +28,14 @@ class BodyRecord(ctypes.Structure):
     """``sm_body`` of kernel.h; the arrays must outlive it."""
 
     _fields_ = (
-        *((name, c_int32) for name in ("joints", "dofs", "segments", "vertices", "faces", "records")),
-        *((name, c_void_p) for name in ("parents", "offsets", "dof_starts", "dof_kinds", "dof_axes")),
-        *((name, c_void_p) for name in ("segment_joints", "spheres")),
-        *((name, c_void_p) for name in ("vertex_starts", "face_starts", "record_starts")),
-        *((name, c_void_p) for name in ("x", "y", "z", "corners")),
-        *((name, c_void_p) for name in ("record_vertices", "record_faces", "record_signs")),
-    )  # fmt: skip
+        *((name, c_int32) for name in ("joints", "dofs", "segments")),
+        *((name, c_int32) for name in ("vertices", "clusters", "records")),
+        *((name, c_void_p) for name in ("parents", "offsets", "dof_starts", "dof_kinds")),
+        *((name, c_void_p) for name in ("dof_axes", "segment_joints", "spheres")),
+        *((name, c_void_p) for name in ("vertex_starts", "cluster_starts", "run_starts")),
+        *((name, c_void_p) for name in ("x", "y", "z", "corners", "face_planes")),
+        *((name, c_void_p) for name in ("cluster_planes", "record_vertices", "record_faces")),
+    )
 
 
 class ViewsRecord(ctypes.Structure):
@@ -44,7 +45,7 @@ class ViewsRecord(ctypes.Structure):
         ("views", c_int32),
         ("processor", c_int32),
         ("near", c_double),
-        *((name, c_void_p) for name in ("sizes", "projections", "planes")),
+        *((name, c_void_p) for name in ("sizes", "projections", "planes", "optics")),
         *((name, c_void_p) for name in ("word_starts", "map_starts", "sum_starts")),
     )
 
@@ -61,7 +62,7 @@ class WeightsRecord(ctypes.Structure):
 def _declare(library: ctypes.CDLL) -> None:
     body, views, weights = POINTER(BodyRecord), POINTER(ViewsRecord), POINTER(WeightsRecord)
     pointer, scratch = c_void_p, (c_void_p, c_size_t)
-    segments = (c_void_p, c_int32)
+    poses, segments = (c_void_p, c_int64, c_int32), (c_void_p, c_int32)
     signatures = {
         "sm_abi": (c_int32, ()),
         "sm_sources": (ctypes.c_char_p, ()),
@@ -71,9 +72,9 @@ def _declare(library: ctypes.CDLL) -> None:
         "sm_transforms": (c_int32, (body, pointer, c_int64, pointer)),
         "sm_prepare": (c_int32, (views, pointer, weights)),
         "sm_mask": (c_int32, (views, weights, pointer, pointer, weights)),
-        "sm_energies": (c_int32, (body, views, weights, pointer, c_int64, c_int32, *segments, pointer, *scratch)),
+        "sm_energies": (c_int32, (body, views, weights, *poses, *segments, pointer, *scratch)),
         "sm_silhouettes": (c_int32, (body, views, pointer, c_int32, *segments, pointer, *scratch)),
-        "sm_bounds": (c_int32, (body, views, pointer, c_int64, c_int32, *segments, pointer, *scratch)),
+        "sm_bounds": (c_int32, (body, views, *poses, *segments, pointer, *scratch)),
         "sm_snapped": (c_int32, (body, views, pointer, pointer, *scratch)),
     }  # fmt: skip
     for name, (result, arguments) in signatures.items():

@@ -1,13 +1,14 @@
 """Bodies and cameras in the form the native kernel takes: flat arrays behind one record each."""
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 
 from ..body.body import Body
 from ..cameras.camera import Camera
 from ..native.library import BodyRecord, ViewsRecord
-from .records import edge_records
+from .clusters import clustered_mesh
 
 NEAR = 0.01
 """Metres in front of a camera at which surfaces are cut off."""
@@ -39,16 +40,12 @@ def body_record(body: Body, level: int) -> BodyRecord:
     """The body at one level of detail as the kernel's ``sm_body``."""
     surface, dofs = body.surfaces[level], body.dofs
     joints, segments = len(body.joint_names), len(body.segment_names)
-    begins = np.repeat(surface.vertex_starts[:-1], np.diff(surface.triangle_starts))
-    corners = (surface.triangles - begins[:, None]).astype(np.int32)
-    pieces = [
-        edge_records(corners[begin:end])
-        for begin, end in zip(
-            surface.triangle_starts[:-1], surface.triangle_starts[1:], strict=True
-        )
+    bounds = zip(pairwise(surface.vertex_starts), pairwise(surface.triangle_starts), strict=True)
+    meshes = [
+        clustered_mesh(surface.vertices[v0:v1], surface.triangles[f0:f1] - v0)
+        for (v0, v1), (f0, f1) in bounds
     ]
-    record_starts = np.cumsum([0, *(len(piece.vertices) for piece in pieces)]).astype(np.int32)
-    columns = surface.vertices.T
+    x, y, z = surface.vertices.T
     arrays = {
         "parents": body.parents,
         "offsets": body.offsets,
@@ -58,16 +55,23 @@ def body_record(body: Body, level: int) -> BodyRecord:
         "segment_joints": body.segment_joints,
         "spheres": enclosing_spheres(surface.vertices, surface.vertex_starts),
         "vertex_starts": surface.vertex_starts,
-        "face_starts": surface.triangle_starts,
-        "record_starts": record_starts,
-        "x": columns[0], "y": columns[1], "z": columns[2],
-        "corners": corners,
-        "record_vertices": np.concatenate([piece.vertices for piece in pieces]),
-        "record_faces": np.concatenate([piece.faces for piece in pieces]),
-        "record_signs": np.concatenate([piece.signs for piece in pieces]),
-    }  # fmt: skip
-    counts = (joints, len(dofs), segments, len(surface.vertices), len(corners), record_starts[-1])
-    return _filled(BodyRecord(*(int(count) for count in counts)), arrays)
+        "cluster_starts": _running([mesh.cluster_planes.shape[1] for mesh in meshes]),
+        "run_starts": _running(np.concatenate([mesh.run_lengths for mesh in meshes])),
+        **{"x": x, "y": y, "z": z},
+        "corners": np.concatenate([mesh.corners for mesh in meshes]),
+        "face_planes": np.concatenate([mesh.face_planes for mesh in meshes], axis=1),
+        "cluster_planes": np.concatenate([mesh.cluster_planes for mesh in meshes], axis=1),
+        "record_vertices": np.concatenate([mesh.records.vertices for mesh in meshes]),
+        "record_faces": np.concatenate([mesh.records.faces for mesh in meshes]),
+    }
+    lasts = (int(arrays[f"{name}_starts"][-1]) for name in ("cluster", "run"))
+    counts = joints, len(dofs), segments, len(surface.vertices), *lasts
+    return _filled(BodyRecord(*counts), arrays)
+
+
+def _running(counts: Sequence[int]) -> np.ndarray:
+    """(n + 1,) int32 running sums from 0 on."""
+    return np.cumsum([0, *counts]).astype(np.int32)
 
 
 def clipping_planes(camera: Camera) -> np.ndarray:
@@ -89,6 +93,12 @@ def clipping_planes(camera: Camera) -> np.ndarray:
     return planes / np.linalg.norm(planes[:, :3], axis=1, keepdims=True)
 
 
+def optics(camera: Camera) -> np.ndarray:
+    """(5,) the camera's centre in the world, det K, and the largest stretch of K in px."""
+    scale = np.linalg.norm(camera.matrix[:2, :2], 2)
+    return np.array([*camera.centre, np.linalg.det(camera.matrix), scale])
+
+
 def views_record(cameras: Sequence[Camera], processor: int) -> ViewsRecord:
     """The cameras as the kernel's ``sm_views``, computed by the given code path."""
     sizes = np.array([camera.size for camera in cameras], np.int32)
@@ -101,6 +111,7 @@ def views_record(cameras: Sequence[Camera], processor: int) -> ViewsRecord:
         "sizes": sizes,
         "projections": np.stack([camera.projection for camera in cameras]),
         "planes": np.stack([clipping_planes(camera) for camera in cameras]),
+        "optics": np.stack([optics(camera) for camera in cameras]),
         "word_starts": starts(height * ((width + 63) // 64)),
         "map_starts": starts(height * width),
         "sum_starts": starts(height * (width + 1)),

@@ -60,6 +60,8 @@ class NativeEvaluator:
     ):
         if not cameras or not all(camera.is_pinhole for camera in cameras):
             raise ValueError("expected at least one camera, all of them pinhole")
+        if not all(np.array_equal(camera.matrix[2], [0, 0, 1]) for camera in cameras):
+            raise ValueError("expected 0 0 1 in the last row of every intrinsic matrix")
         self._library = load()
         best = self._library.sm_processor()
         if processor is not None and not 1 <= processor <= best:

@@ -1,0 +1,84 @@
+/* What the files that are compiled once per code path (SM_PATH) share. */
+#ifndef SM_PATH_H
+#define SM_PATH_H
+
+#include "internal.h"
+
+#include <string.h>
+
+#define JOIN_(a, b) a##b
+#define JOIN(a, b) JOIN_(a, b)
+#define PATH(name) JOIN(name, SM_PATH)
+#define sm_draw_contours PATH(sm_draw_contours_)
+#define sm_draw_triangles PATH(sm_draw_triangles_)
+
+/* Draws a segment that lies in the guard region as a whole, by its contours; `a` carries joint's
+ * metres to homogeneous px. Returns 0, with nothing drawn, where a row has too many crossings. */
+int32_t sm_draw_contours(const sm_body *, const sm_views *, int32_t view, int32_t segment,
+                         const double *a, sm_work *);
+
+/* Draws any segment, every triangle on its own, clipped: slow, the same picture, no conditions. */
+void sm_draw_triangles(const sm_body *, double near, int32_t segment, const double *a, sm_picture *);
+
+static inline void homogeneous(const sm_body *body, const double *a, int32_t vertex, double *h) {
+    double x = body->x[vertex], y = body->y[vertex], z = body->z[vertex];
+    for (int i = 0; i < 3; i++) h[i] = a[4 * i] * x + a[4 * i + 1] * y + a[4 * i + 2] * z + a[4 * i + 3];
+}
+
+/* 1/256 px, to the nearest, ties to even: the low bits of a double of 52 fixed bits. */
+static inline int32_t snap(double px) {
+    double shifted = px * 256.0 + 6755399441055744.0;
+    int64_t bits;
+    memcpy(&bits, &shifted, sizeof bits);
+    return (int32_t)bits;
+}
+
+/* Signed distances to the clipping planes in homogeneous px. */
+static inline double inside(const double *h, int plane, double near) {
+    switch (plane) {
+        case 0: return h[2] - near;
+        case 1: return SM_GUARD_PX * h[2] + h[0];
+        case 2: return SM_GUARD_PX * h[2] - h[0];
+        case 3: return SM_GUARD_PX * h[2] + h[1];
+        default: return SM_GUARD_PX * h[2] - h[1];
+    }
+}
+
+static inline int is_inside(const double *h, double near) {
+    for (int plane = 0; plane < 5; plane++)
+        if (!(inside(h, plane, near) >= 0.0)) return 0;
+    return 1;
+}
+
+static inline void set_span(uint64_t *row, int32_t a, int32_t b) {
+    if (a >= b) return;
+    int32_t first = a >> 6, last = (b - 1) >> 6;
+    uint64_t head = ~0ull << (a & 63), tail = ~0ull >> (63 - ((b - 1) & 63));
+    if (first == last) {
+        row[first] |= head & tail;
+        return;
+    }
+    row[first] |= head;
+    for (int32_t k = first + 1; k < last; k++) row[k] = ~0ull;
+    row[last] |= tail;
+}
+
+/* Makes the rows from top to bottom part of the valid picture. */
+static inline void open_rows(sm_picture *picture, int32_t top, int32_t bottom) {
+    size_t bytes = 8 * (size_t)picture->words;
+    char *rows = (char *)picture->rows;
+    if (picture->y0 >= picture->y1) picture->y0 = picture->y1 = top;
+    if (top < picture->y0) {
+        memset(rows + bytes * (size_t)top, 0, bytes * (size_t)(picture->y0 - top));
+        picture->y0 = top;
+    }
+    if (bottom > picture->y1) {
+        memset(rows + bytes * (size_t)picture->y1, 0, bytes * (size_t)(bottom - picture->y1));
+        picture->y1 = bottom;
+    }
+}
+
+/* First row whose pixel centres lie at or below a snapped y. */
+static inline int32_t first_row(int32_t y) { return (y + 255) >> 8; }
+
+#endif
