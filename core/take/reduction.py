@@ -55,8 +55,14 @@ def fitting_reduction(silhouettes: tuple[Silhouette, ...]) -> Reduction:
     Args:
         silhouettes: some of the camera's silhouettes; empty ones say nothing.
     """
-    rows = [np.flatnonzero(s.foreground.any(axis=1)) for s in silhouettes]
-    heights = [found[-1] - found[0] + 1 for found in rows if len(found)]
+    heights = [_performer_height(s.foreground) for s in silhouettes if s.foreground.any()]
     if not heights:
         return Reduction()
     return Reduction(max(1, round(float(np.median(heights)) / WORKING_HEIGHT_PX)))
+
+
+def _performer_height(foreground: np.ndarray) -> int:
+    """Rows that the largest patch covers; others may be anything."""
+    _, _, stats, _ = cv2.connectedComponentsWithStats(foreground.astype(np.uint8), connectivity=8)
+    largest = 1 + int(np.argmax(stats[1:, cv2.CC_STAT_AREA]))
+    return int(stats[largest, cv2.CC_STAT_HEIGHT])

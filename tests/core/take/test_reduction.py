@@ -20,6 +20,12 @@ def test_the_performer_ends_up_near_the_working_height(height, factor):
     assert fitting_reduction((silhouette(height), silhouette(0))).factor == factor
 
 
+def test_patches_elsewhere_do_not_make_the_performer_taller():
+    spoilt = silhouette(500)
+    spoilt.foreground[990:, :20] = True
+    assert fitting_reduction((spoilt,)).factor == 1
+
+
 def test_no_performer_reduces_nothing():
     assert fitting_reduction((silhouette(0),)).factor == 1
 
