@@ -3,38 +3,30 @@
 import os
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from .body.body import Body
-from .body.file import read_body, write_body
+from .body.file import read_body
 from .body.templates import template
-from .cameras.arrangement import millimetres_per_pixel
 from .cameras.camera import Camera
 from .energy.evaluator import Evaluator
 from .errors import MocapError
 from .fitting.hierarchical import HierarchicalTracker
 from .fitting.tracking import FrameFit, track
 from .initialisation.first_pose import FirstFit, PoseRequest, initialised
-from .motion.export_request import Exporter, ExportRequest
-from .motion.formats.trc import write_trc
-from .motion.motion import Motion, read_motion, write_motion
 from .motion.overlay import OverlayVideo, Tile, overlay_picture
-from .motion.point_track import PointTrack, read_point_track
-from .motion.recording import recorded
-from .motion.report import fit_quality, versions, write_report
-from .motion.scoring import score
 from .progress import Progress
 from .rendering.native import NativeEvaluator
 from .rendering.reference import ReferenceEvaluator
 from .silhouettes.silhouette import Silhouette
-from .take.shown_footage import shown_footage
+from .take.results import FitResult, Outcome, made_folder, write_results
 from .take.take import Take
 from .take.views import Views, open_views
 
-MOTION, BODY, REPORT, OVERLAY = "motion.npz", "body.npz", "report.json", "overlay.mp4"
+OVERLAY = "overlay.mp4"
 _MOST_INITIAL_FRAMES = 8
 Silhouettes = tuple[Silhouette, ...]
 """One frame's, camera by camera."""
@@ -72,21 +64,6 @@ class FitRequest:
     shield: Callable[[], AbstractContextManager] = nullcontext
 
 
-@dataclass(frozen=True, eq=False)
-class FitResult:
-    """What was fitted.
-
-    Attributes:
-        motion: the tracked frames.
-        report: as written to report.json.
-        files: everything written, in order.
-    """
-
-    motion: Motion
-    report: dict = field(repr=False)
-    files: tuple[Path, ...]
-
-
 def fit(take: Take, request: FitRequest, progress: Progress) -> FitResult:
     """Tracks ``take`` and writes motion.npz, body.npz, report.json and overlay.mp4.
 
@@ -108,8 +85,15 @@ def fit(take: Take, request: FitRequest, progress: Progress) -> FitResult:
     fits: list[FrameFit] = []
 
     def save() -> FitResult:
+        settings = {
+            "tracker": request.tracker,
+            "evaluator": request.evaluator,
+            "without": list(request.without),
+        }
+        notes = (*views.notes, *first.notes)
         with request.shield():
-            return _written(take, request, views, first, fits)
+            outcome = Outcome(take, views, first.body, fits, settings, notes)
+            return write_results(outcome, request.out)
 
     progress.begin("fit", views.frames[1] - views.frames[0] + 1)
     with OverlayVideo(request.out / OVERLAY, float(take.fps)) as overlay:
@@ -125,70 +109,6 @@ def fit(take: Take, request: FitRequest, progress: Progress) -> FitResult:
         result = save()
         overlay.write()
     return FitResult(result.motion, result.report, (*result.files, overlay.path))
-
-
-def check_formats(formats: Sequence[str], exporter: Exporter | None) -> None:
-    """Refuses formats that nobody here can write.
-
-    Raises:
-        MocapError: Blender is needed and missing.
-    """
-    needing = [name for name in formats if name != "trc"]
-    if needing and exporter is None:
-        raise MocapError(
-            f"{', '.join(needing)} can be written only with Blender",
-            "pip install silhouette-mocap[blender], or ask for other formats with --export",
-        )
-
-
-def export(
-    take: Take, folder: Path, formats: Sequence[str], exporter: Exporter | None
-) -> tuple[Path, ...]:
-    """Writes the fit in ``folder`` in further formats, named after the take.
-
-    Raises:
-        MocapError: no fit in the folder, Blender is needed and missing, or a file cannot be
-            written.
-    """
-    check_formats(formats, exporter)
-    if not formats:
-        return ()
-    motion = read_motion(folder / MOTION)
-    if exporter is None:
-        path = folder / f"{take.name}.trc"
-        write_trc(path, motion)
-        return (path,)
-    views = open_views(take)
-    names = set(motion.camera_names)
-    shown = [view for view in views.views if view.undistortion.camera.name in names]
-    footage = {}
-    if "blend" in formats:
-        footage = shown_footage(shown, int(motion.frames[-1]), float(take.fps), folder)
-    request = ExportRequest(
-        body=read_body(folder / BODY),
-        motion=motion,
-        cameras=tuple(view.undistortion.camera for view in shown),
-        name=take.name,
-        formats=tuple(formats),
-        folder=folder,
-        footage=footage,
-    )
-    return exporter(request)
-
-
-def made_folder(path: Path) -> Path:
-    """``path``, made where it is missing.
-
-    Raises:
-        MocapError: it cannot be made.
-    """
-    try:
-        path.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise MocapError(
-            f"cannot be made ({error.strerror})", "give another folder", file=path
-        ) from error
-    return path
 
 
 def initial_frames(take: Take, frames: tuple[int, int]) -> tuple[int, ...]:
@@ -235,59 +155,6 @@ def _tracked(
 
         for found in track(tracker, pose, read()):
             yield found, seen.pop(found.frame)
-
-
-def _written(
-    take: Take, request: FitRequest, views: Views, first: FirstFit, fits: list[FrameFit]
-) -> FitResult:
-    motion = recorded(fits, first.body, [camera.name for camera in views.cameras], take.fps)
-    report = {
-        "take": take.name,
-        "settings": {
-            "take": str(take.path),
-            "tracker": request.tracker,
-            "evaluator": request.evaluator,
-            "body": str(take.performer.body),
-            "frames": list(views.frames),
-            "without": list(request.without),
-        },
-        "versions": versions(),
-        "notes": [*views.notes, *first.notes],
-        "cameras": _camera_facts(views, motion),
-        **fit_quality(motion, fits),
-        "error_mm": _error(take, motion),
-    }
-    files = tuple(request.out / name for name in (MOTION, BODY, REPORT))
-    write_motion(files[0], motion)
-    write_body(files[1], first.body)
-    write_report(files[2], report)
-    return FitResult(motion, report, files)
-
-
-def _camera_facts(views: Views, motion: Motion) -> dict[str, dict]:
-    """Sizes and scale: all scores hold at the working size."""
-    centre = motion.points.mean(axis=(0, 1))
-    return {
-        view.camera.name: {
-            "footage_size": list(view.source.footage.size),
-            "working_size": list(view.camera.size),
-            "reduced_by": view.reduction.factor,
-            "mm_per_px": millimetres_per_pixel(view.camera, centre),
-        }
-        for view in views.views
-    }
-
-
-def _error(take: Take, motion: Motion) -> dict | None:
-    """The error against the truth beside the take, where there is one for these frames."""
-    path = take.path.parent / "truth.npz"
-    if not path.exists():
-        return None
-    truth = read_point_track(path).between(int(motion.frames[0]), int(motion.frames[-1]))
-    if not len(truth.frames):
-        return None
-    found = PointTrack(motion.point_names, motion.frames, motion.points)
-    return score(truth, found).as_dict()
 
 
 def _overlay(evaluator: Evaluator, views: Views, found: FrameFit, seen: Silhouettes) -> np.ndarray:

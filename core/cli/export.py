@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 
 from ..motion.export_request import FORMATS, Exporter
-from ..pipeline import check_formats, export
+from ..take.exporting import check_formats, export
 from .arguments import add_take, format_list, taken
 from .console import say
 

@@ -4,7 +4,9 @@ import argparse
 from pathlib import Path
 
 from ..motion.export_request import FORMATS, Exporter
-from ..pipeline import EVALUATORS, FitRequest, FitResult, check_formats, export, fit
+from ..pipeline import EVALUATORS, FitRequest, fit
+from ..take.exporting import check_formats, export
+from ..take.results import FitResult
 from ..take.take import TRACKERS
 from .arguments import (
     add_cameras_and_frames,

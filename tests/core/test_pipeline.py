@@ -7,12 +7,14 @@ import cv2
 import numpy as np
 import pytest
 from silhouette_mocap.core import pipeline
+from silhouette_mocap.core.body.file import read_body
 from silhouette_mocap.core.body.kinematics import points
 from silhouette_mocap.core.errors import MocapError
 from silhouette_mocap.core.motion.motion import read_motion
-from silhouette_mocap.core.pipeline import FitRequest, check_formats, export, fit, initial_frames
+from silhouette_mocap.core.pipeline import FitRequest, fit, initial_frames
 from silhouette_mocap.core.progress import Silence
 from silhouette_mocap.core.take import InitialPose, read_take
+from silhouette_mocap.core.take.exporting import check_formats, export
 
 
 class Notebook(Silence):
@@ -47,7 +49,7 @@ def test_all_files_are_written_and_agree(fitted):
     assert sorted(path.name for path in out.iterdir()) == sorted(p.name for p in result.files)
     motion = read_motion(out / "motion.npz")
     np.testing.assert_array_equal(motion.frames, [0, 1, 2, 3])
-    body = pipeline.read_body(out / "body.npz")
+    body = read_body(out / "body.npz")
     np.testing.assert_allclose(points(body, motion.pose), motion.points, atol=1e-6)
     report = json.loads((out / "report.json").read_text("utf-8"))
     assert len(report["seconds_per_frame"]) == len(report["evaluations_per_frame"]) == 4

@@ -1,0 +1,63 @@
+"""The result of a fit in further formats."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from ..body.file import read_body
+from ..errors import MocapError
+from ..motion.export_request import Exporter, ExportRequest
+from ..motion.formats.trc import write_trc
+from ..motion.motion import read_motion
+from .results import BODY, MOTION
+from .shown_footage import shown_footage
+from .take import Take
+from .views import open_views
+
+
+def check_formats(formats: Sequence[str], exporter: Exporter | None) -> None:
+    """Refuses formats that nobody here can write.
+
+    Raises:
+        MocapError: Blender is needed and missing.
+    """
+    needing = [name for name in formats if name != "trc"]
+    if needing and exporter is None:
+        raise MocapError(
+            f"{', '.join(needing)} can be written only with Blender",
+            "pip install silhouette-mocap[blender], or ask for other formats with --export",
+        )
+
+
+def export(
+    take: Take, folder: Path, formats: Sequence[str], exporter: Exporter | None
+) -> tuple[Path, ...]:
+    """Writes the fit in ``folder`` in further formats, named after the take.
+
+    Raises:
+        MocapError: no fit in the folder, Blender is needed and missing, or a file cannot be
+            written.
+    """
+    check_formats(formats, exporter)
+    if not formats:
+        return ()
+    motion = read_motion(folder / MOTION)
+    if exporter is None:
+        path = folder / f"{take.name}.trc"
+        write_trc(path, motion)
+        return (path,)
+    views = open_views(take)
+    names = set(motion.camera_names)
+    shown = [view for view in views.views if view.undistortion.camera.name in names]
+    footage = {}
+    if "blend" in formats:
+        footage = shown_footage(shown, int(motion.frames[-1]), float(take.fps), folder)
+    request = ExportRequest(
+        body=read_body(folder / BODY),
+        motion=motion,
+        cameras=tuple(view.undistortion.camera for view in shown),
+        name=take.name,
+        formats=tuple(formats),
+        folder=folder,
+        footage=footage,
+    )
+    return exporter(request)
