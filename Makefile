@@ -33,8 +33,8 @@ demo: .venv/.ready ## Fit the sample walk, from masks and from silhouette videos
 
 demo-real: .venv/.ready ## Fetch the real four-camera recording and fit it into out/balance
 	@.venv/bin/python sample_scenes/balance/fetch.py
-	@$(MOCAP) plate sample_scenes/balance/take.toml --recipes sample_scenes/balance/plates.toml
-	@$(MOCAP) masks sample_scenes/balance/take.toml --out out/balance/masks
+	@$(MOCAP) plate sample_scenes/balance/take_footage.toml --recipes sample_scenes/balance/plates.toml
+	@$(MOCAP) masks sample_scenes/balance/take_footage.toml --out sample_scenes/balance/data/masks
 	@$(MOCAP) fit sample_scenes/balance/take.toml --out out/balance
 	@.venv/bin/python .ci/results.py out/balance
 

@@ -13,7 +13,7 @@ from .console import say
 
 NAME = "masks"
 SUMMARY = "write the silhouettes of a take as masks and tell how sound they look"
-EXAMPLE = "silhouette-mocap masks sample_scenes/balance/take.toml --out out/balance/masks"
+EXAMPLE = "silhouette-mocap masks sample_scenes/balance/take_footage.toml --out out/balance/masks"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

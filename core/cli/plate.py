@@ -14,7 +14,7 @@ from .console import say
 NAME = "plate"
 SUMMARY = "make a plate of the empty scene for each camera from its footage and further stills"
 EXAMPLE = (
-    "silhouette-mocap plate sample_scenes/balance/take.toml "
+    "silhouette-mocap plate sample_scenes/balance/take_footage.toml "
     "--recipes sample_scenes/balance/plates.toml"
 )
 

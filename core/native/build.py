@@ -68,7 +68,7 @@ def fingerprint(folder: Path = SOURCES) -> str:
 def _objects(target: str) -> list[tuple[str, str, tuple[str, ...]]]:
     """(object, source, flags) of everything that is linked."""
     paths = PATHS if "x86_64" in target else {"base": ()}
-    whole = [
+    whole: list[tuple[str, str, tuple[str, ...]]] = [
         (f"{name}.o", f"{name}.c", ()) for name in ("kernel", "processor", "transforms", "weights")
     ]
     return whole + [

@@ -159,9 +159,10 @@ class ReferenceEvaluator:
             segments = range(len(self.body.segment_names))
         pictures = []
         for view, camera in enumerate(self.cameras):
-            picture = np.zeros(camera.size[::-1], bool)
+            width, height = camera.size
+            picture = np.zeros((height, width), bool)
             for corners in self._snapped_triangles(pose, view, segments):
-                rows, columns, covered = covered_pixels(corners, picture.shape)
+                rows, columns, covered = covered_pixels(corners, (height, width))
                 picture[rows, columns] |= covered
             pictures.append(picture)
         return tuple(pictures)
@@ -184,6 +185,10 @@ class ReferenceEvaluator:
                     px = snapped_px(h)
                     boxes[n, v] = -(-np.concatenate([px.min(axis=0), px.max(axis=0)]) // 256)
         return boxes
+
+    def transforms(self, poses: np.ndarray) -> np.ndarray:
+        """(N, J, 3, 4) world_from_joint of poses (N, D), metres."""
+        return joint_transforms(self.body, poses)
 
     def snapped(self, pose: np.ndarray) -> np.ndarray:
         """(V, n, 2) int32 vertices in 1/256 px; the lowest int32 where one is clipped away."""
