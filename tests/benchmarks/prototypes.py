@@ -20,7 +20,7 @@ ROOT_ORDER = [0, 1, 2, 5, 4, 3]
 
 
 class Prototypes:
-    """The prototypes' modules, imported from ``folder`` with everything they write in ``scratch``."""
+    """The prototypes' modules, imported from ``folder`` what they write goes to ``scratch``."""
 
     def __init__(self, folder: Path, scratch: Path):
         flags = ["-O3", "-march=x86-64-v3", "-ffast-math", "-shared", "-fPIC"]
