@@ -3,7 +3,7 @@
 import difflib
 import math
 from collections.abc import Collection
-from dataclasses import fields, is_dataclass
+from dataclasses import fields
 from pathlib import Path
 from typing import Any, NoReturn, TypeVar
 
@@ -122,25 +122,18 @@ class Table:
         return tuple(dict.fromkeys(value))
 
     def settings(self, kind: type[Settings]) -> Settings:
-        """A frozen dataclass of numbers, flags and such dataclasses, filled by this table.
+        """A frozen dataclass of numbers and flags, filled by this table.
 
         Its own checks, which raise ValueError, are reported as faults of this table.
         """
         defaults = {field.name: field.default for field in fields(kind)}  # type: ignore[arg-type]
         self.allow(*defaults)
-        values = {}
-        for name in self.values:
-            default = defaults[name]
-            if is_dataclass(default):
-                values[name] = self.table(name).settings(type(default))
-                continue
-            value = self.values[name]
-            right = type(value) is bool if type(default) is bool else _is_number(value)
-            if not right:
-                self._wrong(name, _TYPES[type(default)])
-            values[name] = value
+        for name, value in self.values.items():
+            wanted = type(defaults[name])
+            if not (type(value) is bool if wanted is bool else _is_number(value)):
+                self._wrong(name, _TYPES[wanted])
         try:
-            return kind(**values)
+            return kind(**self.values)
         except ValueError as error:
             self.fault(f"[{self.path}]: {error}")
 
