@@ -163,7 +163,8 @@ def _extent_ratio(
     for silhouettes in frames:
         for camera, model, silhouette in zip(tracker.cameras, rendered, silhouettes, strict=True):
             seen = row_span(silhouette)
-            inside = seen is not None and seen[0] > 0 and seen[1] < camera.size[1] - 1
-            if inside and model is not None:
+            if seen is None or model is None:
+                continue
+            if seen[0] > 0 and seen[1] < camera.size[1] - 1:
                 ratios.append((seen[1] - seen[0] + 1) / (model[1] - model[0] + 1))
     return float(np.median(ratios)) if ratios else 1.0

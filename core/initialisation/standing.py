@@ -43,7 +43,7 @@ def _nearest_to_rays(centres: np.ndarray, directions: np.ndarray) -> np.ndarray:
     A sum of distances, not of squares, lets a camera that shows something else be outvoted.
     """
     across = np.eye(3) - directions[:, :, None] * directions[:, None, :]
-    weights = np.ones(len(centres))
+    weights, point = np.ones(len(centres)), centres.mean(axis=0)
     for _ in range(_REWEIGHTINGS):
         weighted = weights[:, None, None] * across
         right = np.einsum("vab,vb->a", weighted, centres)

@@ -30,7 +30,8 @@ class Motion:
         xor_px: (T, V) px that differ between observed and rendered silhouette.
         iou: (T, V) intersection over union of the two; NaN where nothing was observed.
         view_weights: (T, V) how far each view was trusted, 0 to 1.
-        limb_residual: (T, 5) mean contour distance in px of torso, left arm, right arm, left leg, right leg.
+        limb_residual: (T, 5) mean contour distance in px of torso, left arm, right arm, left leg,
+            right leg.
         camera_names: V names.
         confidence: (T, 14) probability that a point is off by less than 50 mm.
         lost: (T,) bool, the pose is not to be trusted.

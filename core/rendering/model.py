@@ -1,6 +1,6 @@
 """Bodies and cameras in the form the native kernel takes: flat arrays behind one record each."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -69,7 +69,7 @@ def body_record(body: Body, level: int) -> BodyRecord:
     return _filled(BodyRecord(*counts), arrays)
 
 
-def _running(counts: Sequence[int]) -> np.ndarray:
+def _running(counts: Iterable[int]) -> np.ndarray:
     """(n + 1,) int32 running sums from 0 on."""
     return np.cumsum([0, *counts]).astype(np.int32)
 
