@@ -56,7 +56,7 @@ test-addon: env
 bench: .venv/.ready ## Speed of the energy, beside frozen baselines where they are at hand
 	@.venv/bin/python tests/benchmarks/energy.py
 
-blender: .venv-3.13/.ready-313 ## A real Blender 5.2, cached outside the tree (needs root and a Debian-like machine)
+blender: .venv/.ready .venv-3.13/.installed ## A real Blender 5.2, cached outside the tree (needs root and a Debian-like machine)
 	@.ci/blender
 
 clean: ## Forget results and caches; the environments stay
