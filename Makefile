@@ -7,6 +7,7 @@ SHELL := /bin/bash
 MOCAP := .venv/bin/silhouette-mocap
 KERNEL := $(wildcard core/native/build.py core/native/*.c core/native/*.h)
 CORE_TESTS := tests/core tests/test_layers.py
+PROTOTYPES ?= $(wildcard ../shared/prototypes)
 
 .PHONY: help env demo demo-real test lint test-core test-addon bench blender clean
 
@@ -54,7 +55,7 @@ test-addon: env
 	.venv-3.13/bin/python -m pytest -q -n 2 tests/addon
 
 bench: .venv/.ready ## Speed of the energy, beside frozen baselines where they are at hand
-	@.venv/bin/python tests/benchmarks/energy.py
+	@.venv/bin/python tests/benchmarks/energy.py $(addprefix --prototypes ,$(PROTOTYPES))
 
 blender: .venv/.ready .venv-3.13/.installed ## A real Blender 5.2, cached outside the tree (needs root and a Debian-like machine)
 	@.ci/blender
