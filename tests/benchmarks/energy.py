@@ -11,6 +11,7 @@ import argparse
 import json
 import os
 import platform
+import subprocess
 import sys
 import tempfile
 import time
@@ -20,10 +21,13 @@ from pathlib import Path
 
 import numpy as np
 from prototypes import Prototypes
+from silhouette_mocap.core.body.templates import template
+from silhouette_mocap.core.cameras.presets import studio_t
 from silhouette_mocap.core.energy.weight_maps import xor_weight_maps
 from silhouette_mocap.core.rendering.native import NativeEvaluator
 from silhouette_mocap.core.silhouettes.silhouette import Silhouette
 
+ROOT = Path(__file__).resolve().parents[2]
 TURNS, SECONDS = 7, 0.15
 SIZES = ((320, 240), (640, 480))
 BATCH = 256
@@ -144,19 +148,66 @@ def processor_name() -> str:
     return f"{models[0] if models else platform.processor()}, {os.cpu_count()} cores"
 
 
+def bench_own() -> dict[str, dict[str, float]]:
+    """Our rows alone, on our own body of sixteen segments in the studio's eight cameras."""
+    body, studio = template("sixteen_segment"), studio_t()
+    rng = np.random.default_rng(0)
+    start = rng.normal(0, 0.1, len(body.dofs))
+    results = {}
+    for name, part in (("whole", None), ("limb", "left_arm"), ("hand", "left_hand")):
+        chosen = next((p for p in body.parts if p.name == part), None)
+        segments = None if chosen is None else list(chosen.segments)
+        moved = np.arange(len(body.dofs)) if chosen is None else np.array(chosen.dofs)
+        poses = np.repeat(start[None], BATCH, axis=0)
+        poses[:, moved] += rng.normal(0, 0.05, (BATCH, len(moved)))
+        rows = []
+        for number, level in ((-1, "full"), (0, "coarse")):
+            evaluator = NativeEvaluator(body, studio.cameras, number)
+            pictures = evaluator.silhouettes(start)
+            maps = xor_weight_maps([Silhouette(p, np.ones_like(p)) for p in pictures])
+            rows.append(native_variant(f"native, {level} mesh", evaluator, maps, poses, segments))
+        medians = measured([variant for variant, _ in rows])
+        exact = rows[0][1]
+        differences = [abs(energies - exact).max() for _, energies in rows]
+        print_rows(name, medians, medians["native, full mesh"], differences)
+        results[name] = medians
+    return results
+
+
+def bench_all(folder: Path) -> dict[str, dict[str, float]]:
+    """All rows on the prototypes' body and cameras."""
+    with tempfile.TemporaryDirectory() as scratch:
+        prototypes = Prototypes(folder, Path(scratch))
+        return {
+            f"{size[0]}x{size[1]} {part}": bench_part(prototypes, size, part)
+            for size in SIZES
+            for part in PARTS
+        }
+
+
 def main() -> None:
+    """Prints the table, and writes it where ``--json`` says."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--prototypes", type=Path, help="folder of the frozen prototypes")
     parser.add_argument("--json", type=Path, help="file to write the medians to")
     arguments = parser.parse_args()
-    with tempfile.TemporaryDirectory() as scratch:
-        prototypes = Prototypes(arguments.prototypes.resolve(), Path(scratch))
-        results = {"machine": processor_name()}
-        for size in SIZES:
-            for part in PARTS:
-                results[f"{size[0]}x{size[1]} {part}"] = bench_part(prototypes, size, part)
+    np.finfo(np.float32), np.finfo(float)  # asked before -ffast-math of kern.c flushes subnormals
+    machine = processor_name()
+    sys.stdout.write(
+        f"{machine}; one thread; medians of {TURNS} turns; x: to the row marked 1.00\n"
+    )
+    folder = arguments.prototypes or ROOT.parent / "shared" / "prototypes"
+    if (folder / "kern.c").is_file():
+        try:
+            results = bench_all(folder.resolve())
+        except (ImportError, FileNotFoundError, subprocess.CalledProcessError) as error:
+            sys.stdout.write(f"!! NO PROTOTYPES: {error} (they need gcc and numba)\n")
+            results = bench_own()
+    else:
+        sys.stdout.write(f"!! NO PROTOTYPES in {folder}: our rows alone, on our own body\n")
+        results = bench_own()
     if arguments.json:
-        arguments.json.write_text(json.dumps(results, indent=1))
+        arguments.json.write_text(json.dumps({"machine": machine, **results}, indent=1))
 
 
 if __name__ == "__main__":
