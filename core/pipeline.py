@@ -3,18 +3,19 @@
 import os
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
 import numpy as np
 
 from .body.body import Body
 from .body.file import read_body
+from .body.kinematics import rest_height
 from .body.templates import template
 from .cameras.camera import Camera
 from .energy.evaluator import Evaluator
 from .errors import MocapError
-from .fitting.hierarchical import HierarchicalTracker
+from .fitting.hierarchical import SETTINGS, HierarchicalTracker
 from .fitting.tracking import FrameFit, track
 from .initialisation.first_pose import FirstFit, PoseRequest, initialised
 from .motion.overlay import OverlayVideo, Tile, overlay_picture
@@ -23,7 +24,7 @@ from .rendering.native import NativeEvaluator
 from .rendering.reference import ReferenceEvaluator
 from .silhouettes.silhouette import Silhouette
 from .take.results import FitResult, Outcome, made_folder, write_results
-from .take.take import Take
+from .take.take import Search, Take
 from .take.views import Views, open_views
 
 OVERLAY = "overlay.mp4"
@@ -49,7 +50,7 @@ class FitRequest:
 
     Attributes:
         out: the folder of the result; made where it is missing.
-        tracker: one of `take.take.TRACKERS`.
+        search: how to track.
         evaluator: one of `EVALUATORS`.
         frames: first and last frame, inclusive, that narrow the take's; None leaves an end.
         without: names of cameras to leave out.
@@ -57,7 +58,7 @@ class FitRequest:
     """
 
     out: Path
-    tracker: str = "hierarchical"
+    search: Search = field(default_factory=Search)
     evaluator: str = "native"
     frames: tuple[int | None, int | None] = (None, None)
     without: tuple[str, ...] = ()
@@ -81,12 +82,14 @@ def fit(take: Take, request: FitRequest, progress: Progress) -> FitResult:
     first = _first_fit(take, views, start, request)
     for note in first.notes:
         progress.note(note)
-    tracker = HierarchicalTracker(first.body, views.cameras, EVALUATORS[request.evaluator])
+    make_evaluator = EVALUATORS[request.evaluator]
+    setting = SETTINGS[request.search.setting][request.search.fast_motion]
+    tracker = HierarchicalTracker(first.body, views.cameras, make_evaluator, setting)
     fits: list[FrameFit] = []
 
     def save() -> FitResult:
         settings = {
-            "tracker": request.tracker,
+            **asdict(request.search),
             "evaluator": request.evaluator,
             "without": list(request.without),
         }
@@ -129,13 +132,17 @@ def initial_frames(take: Take, frames: tuple[int, int]) -> tuple[int, ...]:
 
 
 def _first_fit(take: Take, views: Views, start: Sequence[int], request: FitRequest) -> FirstFit:
-    body = take.performer.body
-    body = read_body(body) if isinstance(body, Path) else template(body)
+    body, height = take.performer.body, take.performer.height_m
+    if isinstance(body, Path):
+        body = read_body(body)
+        height = height or rest_height(body)
+    else:
+        body = template(body)
     return initialised(
         body,
         views.cameras,
         tuple(views.silhouettes(frame) for frame in start),
-        PoseRequest(take.initial_pose.kind, take.performer.height_m, take.floor),
+        PoseRequest(take.initial_pose.kind, height, take.floor),
         EVALUATORS[request.evaluator],
     )
 

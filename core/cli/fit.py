@@ -1,6 +1,7 @@
 """``fit``: from a take to a motion and its files."""
 
 import argparse
+from dataclasses import replace
 from pathlib import Path
 
 from ..motion.export_request import FORMATS, Exporter
@@ -54,7 +55,7 @@ def run(arguments: argparse.Namespace, exporter: Exporter | None) -> int:
     check_formats(formats, exporter)
     request = FitRequest(
         out=arguments.out,
-        tracker=arguments.tracker or take.tracker,
+        search=replace(take.search, tracker=arguments.tracker or take.search.tracker),
         evaluator=arguments.evaluator,
         frames=arguments.frames,
         without=tuple(arguments.without),

@@ -60,11 +60,13 @@ class HierarchicalSettings:
 
 
 ROBUST = HierarchicalSettings()
-FAST_MOTION = HierarchicalSettings(grid_steps=7, grid_half_width=np.radians(45))
-FAITHFUL_SLOW = HierarchicalSettings(
+ROBUST_FAST = HierarchicalSettings(grid_steps=7, grid_half_width=np.radians(45))
+FAITHFUL = HierarchicalSettings(
     3, np.radians(12), search_prediction=False, fine_torso=False, prior_share=0.0
 )
-FAITHFUL_FAST = replace(FAITHFUL_SLOW, grid_steps=4, grid_half_width=np.radians(35))
+FAITHFUL_FAST = replace(FAITHFUL, grid_steps=4, grid_half_width=np.radians(35))
+SETTINGS = {"robust": (ROBUST, ROBUST_FAST), "faithful": (FAITHFUL, FAITHFUL_FAST)}
+"""Name -> settings for ordinary and for fast motion; the faithful ones suit the paper's Table 2."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import MocapError
+from ..fitting.hierarchical import SETTINGS
 from .paths import PATH_KEYS, inside
 from .table import Table
 from .take import (
@@ -23,6 +24,7 @@ from .take import (
     FootageFiles,
     InitialPose,
     Performer,
+    Search,
     Take,
 )
 
@@ -114,7 +116,7 @@ def _take(table: Table) -> Take:
     frames = table.frames("frames")
     world, fit, export = (table.table(name) for name in ("world", "fit", "export"))
     world.allow("floor")
-    fit.allow("tracker")
+    fit.allow("tracker", "setting", "fast_motion")
     export.allow("formats")
     _refuse_later(fit, "tracker", _LATER_TRACKERS, TRACKERS)
     _refuse_later(export, "formats", _LATER_EXPORTS, EXPORTS)
@@ -129,7 +131,11 @@ def _take(table: Table) -> Take:
         footage=_footage(table.table("footage")),
         performer=_performer(table.table("performer")),
         floor=0.0 if floor is None else floor,
-        tracker=fit.choice("tracker", TRACKERS, TRACKERS[0]),
+        search=Search(
+            tracker=fit.choice("tracker", TRACKERS, TRACKERS[0]),
+            setting=fit.choice("setting", SETTINGS, "robust"),
+            fast_motion=fit.flag("fast_motion"),
+        ),
         exports=export.words("formats", EXPORTS),
     )
 

@@ -108,6 +108,13 @@ class Table:
             self._wrong(name, "[first, last] with 0 <= first <= last")
         return value
 
+    def flag(self, name: str) -> bool:
+        """True or false; false where it is not given."""
+        value = self.values.get(name, False)
+        if type(value) is not bool:
+            self._wrong(name, "true or false")
+        return value
+
     def words(self, name: str, known: Collection[str]) -> tuple[str, ...]:
         """A list of ``known`` words, each once, in the order given."""
         value = self.values.get(name, [])

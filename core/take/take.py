@@ -90,6 +90,21 @@ class Performer:
 
 
 @dataclass(frozen=True)
+class Search:
+    """How to track.
+
+    Attributes:
+        tracker: one of `TRACKERS`.
+        setting: one of `fitting.hierarchical.SETTINGS`: "robust", or "faithful" to the paper.
+        fast_motion: whether limbs may turn far between two frames: wider, finer grids.
+    """
+
+    tracker: str = TRACKERS[0]
+    setting: str = "robust"
+    fast_motion: bool = False
+
+
+@dataclass(frozen=True)
 class Take:
     """One recording: cameras, footage, performer, settings.
 
@@ -103,7 +118,7 @@ class Take:
         footage: the pictures.
         performer: who is captured.
         floor: height of the floor, world metres.
-        tracker: one of `TRACKERS`.
+        search: how to track.
         exports: formats that fit writes beside motion.npz, of `EXPORTS`.
     """
 
@@ -116,5 +131,5 @@ class Take:
     footage: FootageFiles
     performer: Performer
     floor: float
-    tracker: str
+    search: Search
     exports: tuple[str, ...]

@@ -7,14 +7,17 @@ import cv2
 import numpy as np
 import pytest
 from silhouette_mocap.core import pipeline
-from silhouette_mocap.core.body.file import read_body
-from silhouette_mocap.core.body.kinematics import points
+from silhouette_mocap.core.body.file import read_body, write_body
+from silhouette_mocap.core.body.kinematics import points, rest_height
+from silhouette_mocap.core.body.scaling import scaled
+from silhouette_mocap.core.body.templates import template
 from silhouette_mocap.core.errors import MocapError
 from silhouette_mocap.core.motion.motion import read_motion
 from silhouette_mocap.core.pipeline import FitRequest, fit, initial_frames
 from silhouette_mocap.core.progress import Silence
 from silhouette_mocap.core.take import InitialPose, read_take
 from silhouette_mocap.core.take.exporting import check_formats, export
+from silhouette_mocap.core.take.take import Search
 
 
 class Notebook(Silence):
@@ -56,6 +59,31 @@ def test_all_files_are_written_and_agree(fitted):
     assert report["cameras"]["cam_01"]["working_size"] == [160, 120]
     video = cv2.VideoCapture(str(out / "overlay.mp4"))
     assert sum(video.read()[0] for _ in range(10)) == 4
+
+
+def test_a_fitted_body_keeps_its_size(quick_start, small_take, tmp_path, monkeypatch):
+    take, requests = read_take(small_take), []
+    write_body(tmp_path / "actor.npz", scaled(template("sixteen_segment"), 0.9))
+    take = replace(take, performer=replace(take.performer, body=tmp_path / "actor.npz"))
+    initialised = pipeline.initialised
+
+    def watched(body, cameras, frames, request, make_evaluator):
+        requests.append(request)
+        return initialised(body, cameras, frames, request, make_evaluator)
+
+    monkeypatch.setattr(pipeline, "initialised", watched)
+    fit(take, FitRequest(tmp_path / "out", frames=(0, 0)), Silence())
+    assert requests[0].height_m == pytest.approx(rest_height(read_body(tmp_path / "actor.npz")))
+
+
+def test_the_take_chooses_how_hard_to_search(quick_start, small_take, tmp_path):
+    evaluations = {}
+    for setting in ("robust", "faithful"):
+        request = FitRequest(tmp_path / setting, search=Search(setting=setting), frames=(0, 1))
+        result = fit(read_take(small_take), request, Silence())
+        evaluations[setting] = sum(result.report["evaluations_per_frame"])
+        assert result.report["settings"]["setting"] == setting
+    assert evaluations["faithful"] < 0.7 * evaluations["robust"]
 
 
 def test_frames_before_the_initial_pose_are_tracked_backwards(quick_start, small_take, tmp_path):

@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from silhouette_mocap.core.fitting.hierarchical import (
-    FAITHFUL_SLOW,
+    FAITHFUL,
     ROBUST,
     HierarchicalSettings,
     HierarchicalTracker,
@@ -75,7 +75,7 @@ def test_a_fit_is_never_worse_than_where_it_started():
     body, cameras = small_body("sixteen_segment"), small_studio(4)
     silhouettes = filmed(body, cameras, dof_values(body, left_hip_flexion=0.4))
     start = dof_values(body, right_shoulder_twist=0.3)
-    tracker = HierarchicalTracker(body, cameras, evaluator, FAITHFUL_SLOW)
+    tracker = HierarchicalTracker(body, cameras, evaluator, FAITHFUL)
     fit = tracker.fit(silhouettes, start, start)
     rendered = tracker.evaluator.silhouettes(start)
     energy = sum((s.foreground ^ r).sum() for s, r in zip(silhouettes, rendered, strict=True))
@@ -100,7 +100,7 @@ def test_no_candidate_beyond_the_limits_is_rendered():
 
 def test_evaluations_are_counted_and_those_never_rendered_with_them():
     body, cameras = small_body("sixteen_segment"), small_studio(2)
-    tracker = HierarchicalTracker(body, cameras, Counting, replace(FAITHFUL_SLOW, rounds=1))
+    tracker = HierarchicalTracker(body, cameras, Counting, replace(FAITHFUL, rounds=1))
     fit = tracker.fit(filmed(body, cameras, body.rest_pose), body.rest_pose, body.rest_pose)
     rendered = sum(map(len, tracker.evaluator.poses + tracker.half_evaluator.poses))
     assert rendered <= fit.evaluations < 1.5 * rendered

@@ -1,7 +1,7 @@
 from types import SimpleNamespace
 
 import numpy as np
-from silhouette_mocap.core.fitting.hierarchical import FAITHFUL_SLOW, HierarchicalTracker, PoseFit
+from silhouette_mocap.core.fitting.hierarchical import FAITHFUL, HierarchicalTracker, PoseFit
 from silhouette_mocap.core.fitting.tracking import track
 from synthetic import dof_values, evaluator, filmed, point_errors, small_body, small_studio
 
@@ -19,7 +19,7 @@ def test_a_walk_is_tracked_frame_after_frame():
         for k in range(5)
     ]
     frames = ((10 + k, filmed(body, cameras, pose)) for k, pose in enumerate(poses))
-    tracker = HierarchicalTracker(body, cameras, evaluator, FAITHFUL_SLOW)
+    tracker = HierarchicalTracker(body, cameras, evaluator, FAITHFUL)
     fits = list(track(tracker, body.rest_pose, frames))
     assert [fit.frame for fit in fits] == [10, 11, 12, 13, 14]
     for fit, pose in zip(fits, poses, strict=True):

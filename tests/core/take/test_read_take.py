@@ -7,6 +7,7 @@ import pytest
 from silhouette_mocap.core.errors import MocapError
 from silhouette_mocap.core.take import Adjustment, read_take
 from silhouette_mocap.core.take.reading import exact_fps
+from silhouette_mocap.core.take.take import Search
 
 MINIMAL = """
 version = 1
@@ -42,6 +43,8 @@ height_m = 1.78
 floor = -0.25
 [fit]
 tracker = "hierarchical"
+setting = "faithful"
+fast_motion = true
 [export]
 formats = ["fbx", "blend", "fbx"]
 """
@@ -73,7 +76,7 @@ def test_the_least_that_a_take_needs_is_enough(folder):
     assert take.cameras.calibration == folder / "calibration.toml"
     assert take.footage.silhouettes == str(folder / "masks/{camera}/{frame:06d}.png")
     assert (take.performer.body, take.performer.height_m, take.floor) == ("performer", None, 0)
-    assert (take.tracker, take.exports) == ("hierarchical", ())
+    assert (take.search, take.exports) == (Search("hierarchical", "robust", False), ())
 
 
 def test_every_key_that_works_arrives(folder):
@@ -93,6 +96,7 @@ def test_every_key_that_works_arrives(folder):
     )
     assert (take.performer.body, take.performer.height_m) == ("sixteen_segment", 1.78)
     assert (take.floor, take.exports) == (-0.25, ("fbx", "blend"))
+    assert take.search == Search("hierarchical", "faithful", True)
 
 
 @pytest.mark.parametrize(
@@ -167,6 +171,8 @@ def test_a_fault_in_a_shared_file_names_the_shared_file(folder):
         ("[footage]", "[world]\nflor = 1\n[footage]", 'did you mean "floor"'),
         ("[footage]", '[performer]\nbody = "a.blend#Rig"\n[footage]', "not supported yet"),
         ("[footage]", "[performer]\nheight_m = -1\n[footage]", '"performer.height_m"'),
+        ("[footage]", '[fit]\nsetting = "quick"\n[footage]', "one of robust, faithful"),
+        ("[footage]", "[fit]\nfast_motion = 1\n[footage]", "true or false"),
         ("[footage]", '[fit]\ntracker = "contour"\n[footage]', "use hierarchical"),
         ("[footage]", '[export]\nformats = ["glb"]\n[footage]', '"glb" in "export.formats"'),
         ("[footage]", '[export]\nformats = "fbx"\n[footage]', "a list of texts"),
