@@ -75,9 +75,8 @@ def _tell_take(take: Take) -> None:
     say(f"take        {take.name}, {float(take.fps):.5g} frames per second, frames {span}")
     say(f"initial     pose {take.initial_pose.kind} in {shown}")
     say(f"performer   {take.performer.body}, {tall}; floor at {take.floor:g} m")
-    say(
-        f"tracker     {take.search.tracker} ({take.search.setting}); exports {', '.join(take.exports) or 'none'}"
-    )
+    say(f"tracker     {take.search.tracker}, {take.search.setting}")
+    say(f"exports     {', '.join(take.exports) or 'none'}")
     truth = take.path.parent / "truth.npz"
     say(f"truth       {truth if truth.exists() else 'none beside the take'}")
 
