@@ -33,6 +33,16 @@ class NativeWeights:
     record: WeightsRecord
 
 
+class _Pointed:
+    """An array and its address, which numpy takes a microsecond to tell."""
+
+    __slots__ = ("address", "array", "length")
+
+    def __init__(self, array: np.ndarray):
+        self.array, self.length = array, len(array)
+        self.address = array.ctypes.data
+
+
 class NativeEvaluator:
     """Energies and silhouettes by the native kernel; see `energy.evaluator.Evaluator`.
 
@@ -72,10 +82,8 @@ class NativeEvaluator:
         self._refs = byref(self._body), byref(self._views)
         check(self._library.sm_check(*self._refs))
         self._scratch_bytes = self._library.sm_scratch(*self._refs)
-        self._scratches: list[np.ndarray] = []
-        self._segments: dict[tuple[int, ...] | None, np.ndarray] = {
-            None: np.arange(len(body.segment_names), dtype=np.int32)
-        }
+        self._scratches: list[_Pointed] = []
+        self._segments = {None: _Pointed(np.arange(len(body.segment_names), dtype=np.int32))}
         self._pool = ThreadPoolExecutor(threads) if threads > 1 else None
 
     def prepared(self, maps: WeightMaps) -> NativeWeights:
@@ -126,23 +134,19 @@ class NativeEvaluator:
         chosen = self._chosen(segments)
         count = len(poses)
         energies = np.empty((count, len(self.cameras)), np.int64)
+        first_pose, first_energy = poses.ctypes.data, energies.ctypes.data
 
         def run(begin: int, end: int) -> None:
-            with_scratch = self._take_scratch()
-            code = self._library.sm_energies(
-                *self._refs,
+            self._run(
+                self._library.sm_energies,
                 byref(weights.record),
-                poses.ctypes.data + begin * poses.strides[0],
+                first_pose + begin * poses.strides[0],
                 end - begin,
                 per_view,
-                chosen.ctypes.data,
-                len(chosen),
-                energies.ctypes.data + begin * energies.strides[0],
-                with_scratch.ctypes.data,
-                self._scratch_bytes,
+                chosen.address,
+                chosen.length,
+                first_energy + begin * energies.strides[0],
             )
-            self._scratches.append(with_scratch)
-            check(code)
 
         if self._pool is None or count < 2 * self.threads:
             run(0, count)
@@ -172,7 +176,7 @@ class NativeEvaluator:
         poses, per_view = self._checked(poses)
         chosen = self._chosen(segments)
         boxes = np.empty((len(poses), len(self.cameras), 4), np.int32)
-        arguments = poses.ctypes.data, len(poses), per_view, chosen.ctypes.data, len(chosen)
+        arguments = poses.ctypes.data, len(poses), per_view, chosen.address, chosen.length
         self._run(self._library.sm_bounds, *arguments, boxes.ctypes.data)
         return boxes
 
@@ -221,27 +225,27 @@ class NativeEvaluator:
         poses, per_view = self._checked(np.asarray(pose)[None])
         chosen = self._chosen(segments)
         words = np.empty(self._views.arrays["word_starts"][-1], np.uint64)
-        arguments = poses.ctypes.data, per_view, chosen.ctypes.data, len(chosen)
+        arguments = poses.ctypes.data, per_view, chosen.address, chosen.length
         self._run(self._library.sm_silhouettes, *arguments, words.ctypes.data)
         return words
 
     def _run(self, function, *arguments) -> None:
         scratch = self._take_scratch()
-        code = function(*self._refs, *arguments, scratch.ctypes.data, self._scratch_bytes)
+        code = function(*self._refs, *arguments, scratch.address, self._scratch_bytes)
         self._scratches.append(scratch)
         check(code)
 
-    def _take_scratch(self) -> np.ndarray:
+    def _take_scratch(self) -> _Pointed:
         try:
             return self._scratches.pop()
         except IndexError:
-            return np.empty(self._scratch_bytes, np.uint8)
+            return _Pointed(np.empty(self._scratch_bytes, np.uint8))
 
-    def _chosen(self, segments: Sequence[int] | None) -> np.ndarray:
+    def _chosen(self, segments: Sequence[int] | None) -> _Pointed:
         key = None if segments is None else tuple(segments)
         chosen = self._segments.get(key)
         if chosen is None:
-            chosen = self._segments[key] = np.array(key, np.int32)
+            chosen = self._segments[key] = _Pointed(np.array(key, np.int32))
         return chosen
 
     def _checked(self, poses: np.ndarray) -> tuple[np.ndarray, int]:

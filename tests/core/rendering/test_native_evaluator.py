@@ -73,6 +73,24 @@ def test_kernel_and_reference_agree_on_faces_as_small_as_the_snapping(scenes):
     check_equal(native, reference, maps, poses, [None])
 
 
+def test_contours_and_single_triangles_give_the_same_picture_of_dense_meshes(scenes):
+    rng = np.random.default_rng(16)
+    cameras = [scenes.camera_at(2.5, 60, (64, 48), rng), scenes.camera_at(4, 400, (90, 120), rng)]
+    for bumps in (0.0, 0.002, 0.02):
+        vertices, triangles = scenes.sphere(60, 80, 0.3, rng, bumps)
+        # a vertex that no triangle names, far behind the cameras, makes the kernel clip the segment
+        far = np.concatenate([vertices, [[1e6, 0, 0]]])
+        fast, slow = (
+            NativeEvaluator(
+                scenes.body_of([(points, triangles)], np.random.default_rng(0)), cameras
+            )
+            for points in (vertices, far)
+        )
+        for pose in rng.normal(0, 0.2, (40, len(fast.body.dofs))):
+            for picture, twin in zip(fast.silhouettes(pose), slow.silhouettes(pose), strict=True):
+                np.testing.assert_array_equal(picture, twin)
+
+
 def test_rows_with_more_crossings_than_slots_are_still_exact(scenes):
     rng = np.random.default_rng(5)
     body = scenes.body_of([scenes.soup(rng, 60, 60, 0.4)], rng)

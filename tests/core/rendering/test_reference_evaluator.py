@@ -1,7 +1,9 @@
 """The reference against cases counted by hand."""
 
 import numpy as np
+import pytest
 from silhouette_mocap.core.cameras.camera import Camera
+from silhouette_mocap.core.rendering.native import NativeEvaluator
 from silhouette_mocap.core.rendering.reference import (
     ReferenceEvaluator,
     clipped_polygon,
@@ -43,14 +45,15 @@ def test_a_triangle_through_the_near_plane_is_cut_at_one_centimetre():
     np.testing.assert_allclose(polygon[1], [0.495, 0, 0.01])  # where z = 1 - 2 t is 0.01
 
 
-def test_energy_counts_the_pixels_that_differ(scenes):
+@pytest.mark.parametrize("backend", [ReferenceEvaluator, NativeEvaluator])
+def test_corners_on_pixel_centres_cover_the_left_and_top_but_not_right_and_bottom(scenes, backend):
     rng = np.random.default_rng(0)
     square = np.array([[-1.0, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]])
     body = scenes.body_of([(square, [[0, 1, 2], [0, 2, 3]])], rng)
     matrix = [[4, 0, 10], [0, 4, 10], [0, 0, 1]]
     translation = -body.offsets[0] + [0, 0, 1]
     camera = Camera("front", (20, 20), matrix, np.column_stack([np.eye(3), translation]))
-    evaluator = ReferenceEvaluator(body, [camera])
+    evaluator = backend(body, [camera])
     maps = scenes.maps_for([camera], 1, rng)
     picture = evaluator.silhouettes(body.rest_pose)[0]
     np.testing.assert_array_equal(np.argwhere(picture)[[0, -1]], [[6, 6], [13, 13]])
