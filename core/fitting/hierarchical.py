@@ -161,7 +161,8 @@ class _FrameSearch:
         settings = self.tracker.settings
         dofs = list(part.dofs)
         axes = np.array([dofs.index(dof) for dof in part.grid])
-        centres = [self.last, self.predicted] if settings.search_prediction else [self.last]
+        moves = settings.search_prediction and not np.array_equal(self.last, self.predicted)
+        centres = [self.last, self.predicted] if moves else [self.last]
         points = [self.pose[dofs][None]] + [
             grid_points(centre[dofs], settings.grid_half_width, settings.grid_steps, axes)
             for centre in centres

@@ -144,7 +144,6 @@ def _matched_extent(
     for _ in range(_EXTENT_PASSES):
         ratio = _extent_ratio(tracker, frames, pose)
         body = scaled(tracker.body, ratio)
-        pose = pose.copy()
         tracker = HierarchicalTracker(body, tracker.cameras, make_evaluator, tracker.settings)
         pose = tracker.fit(frames[0], pose, pose).pose
     return tracker, pose
