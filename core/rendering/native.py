@@ -83,7 +83,8 @@ class NativeEvaluator:
         check(self._library.sm_check(*self._refs))
         self._scratch_bytes = self._library.sm_scratch(*self._refs)
         self._scratches: list[_Pointed] = []
-        self._segments = {None: _Pointed(np.arange(len(body.segment_names), dtype=np.int32))}
+        everything = _Pointed(np.arange(len(body.segment_names), dtype=np.int32))
+        self._segments: dict[tuple[int, ...] | None, _Pointed] = {None: everything}
         self._pool = ThreadPoolExecutor(threads) if threads > 1 else None
 
     def prepared(self, maps: WeightMaps) -> NativeWeights:
