@@ -55,6 +55,9 @@ test-addon: env
 	.venv-3.13/bin/python -m pytest -q -n 2 tests/addon
 
 bench: .venv/.ready ## Speed of the energy, beside frozen baselines where they are at hand
+ifneq ($(PROTOTYPES),)
+	@.venv/bin/python -c 'import numba' 2>/dev/null || .venv/bin/python -m pip install -q numba==0.61.2
+endif
 	@.venv/bin/python tests/benchmarks/energy.py $(addprefix --prototypes ,$(PROTOTYPES))
 
 blender: .venv/.ready .venv-3.13/.installed ## A real Blender 5.2, cached outside the tree (needs root and a Debian-like machine)
