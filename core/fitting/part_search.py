@@ -51,7 +51,7 @@ class PartEnergy:
         energies = np.full(len(values), FORBIDDEN)
         if allowed.any():
             per_view = self.evaluator.energies(self.weights, poses[allowed], part.segments)
-            energies[allowed] = per_view.sum(axis=1) + self._prior(values[allowed])
+            energies[allowed] = np.round(per_view.sum(axis=1) + self._prior(values[allowed]), 6)
         return energies
 
     def _prior(self, values: np.ndarray) -> np.ndarray:
@@ -74,7 +74,7 @@ def first_steps(evaluator: Evaluator, pose: np.ndarray, part: Part, tip_px: floa
     ends = np.einsum("njab,jb->nja", transforms[..., :3], body.tails[joints]) + transforms[..., 3]
     lever = np.linalg.norm(ends[1:] - ends[0], axis=2).max(axis=1) / epsilon
     pixel = metres_per_pixel(evaluator.cameras, ends[0].mean(axis=0))
-    return tip_px * pixel / np.maximum(lever, 0.02)
+    return np.round(tip_px * pixel / np.maximum(lever, 0.02), 9)
 
 
 def metres_per_pixel(cameras: tuple[Camera, ...], point: np.ndarray) -> float:

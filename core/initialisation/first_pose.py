@@ -79,7 +79,7 @@ def initialised(
             ]
         )
     )
-    body = scaled(template, height / rest_height(template))
+    body = scaled(template, round(height / rest_height(template), 6))
     pose = _placed(pose_of_kind(body, request.kind), body, centres[0], request.floor)
     tracker = HierarchicalTracker(body, cameras, make_evaluator)
     pose, doubt = _best_heading(tracker, frames[0], pose)

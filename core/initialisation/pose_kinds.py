@@ -50,7 +50,7 @@ def _solved_arm(body: Body, dofs: list[int], side: str, kind: str) -> np.ndarray
     start = np.clip(np.full(len(dofs), 0.1), low + 1e-3, high - 1e-3)
     targets = np.concatenate([elbow_target, wrist_target])
     found = least_squares(lambda v: arm(v)[1:].ravel() - targets, start, bounds=(low, high))
-    return found.x
+    return np.round(found.x, 4)
 
 
 def _hanging(degrees: float, outward: float) -> np.ndarray:

@@ -50,7 +50,7 @@ def _nearest_to_rays(centres: np.ndarray, directions: np.ndarray) -> np.ndarray:
         point = np.linalg.solve(weighted.sum(axis=0), right)
         distances = np.linalg.norm(np.einsum("vab,vb->va", across, point - centres), axis=1)
         weights = 1.0 / np.maximum(distances, 1e-3)
-    return point
+    return np.round(point, 6)
 
 
 def standing_height(
@@ -77,7 +77,7 @@ def standing_height(
             "no view shows the performer's head in the initial pose",
             "set height_m under [performer]",
         )
-    return float(np.median(heights))
+    return round(float(np.median(heights)), 6)
 
 
 def row_span(silhouette: Silhouette) -> tuple[int, int] | None:

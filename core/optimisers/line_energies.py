@@ -6,6 +6,10 @@ one: its values are computed at fixed distances from where it starts, in one bat
 Brent's minimisation asks afterwards is interpolated between them. Close to the start the samples
 lie a quarter of a pixel apart: below that the silhouette energy is piecewise constant and finer
 questions have no answer (SPEC §5).
+
+Pixel counts tie all the time, and a tie decided by the last bit of a sum would send the same search
+to different places under different builds of the numerical libraries. So questions, distances and
+answers are rounded, far below anything that can be seen, before they are compared.
 """
 
 from collections.abc import Callable
@@ -18,6 +22,7 @@ BatchEnergy = Callable[[np.ndarray], np.ndarray]
 _HALF = np.array([0.125, 0.25, 0.375, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 4.0])
 SAMPLES = np.concatenate([-_HALF[::-1], [0.0], _HALF])
 """Distances of a line's samples from its start; 1 is the first step, two pixels at the tip."""
+_DECIMALS = 6
 
 
 class LineEnergies:
@@ -38,15 +43,16 @@ class LineEnergies:
 
     def __call__(self, point: np.ndarray) -> float:
         """The energy at ``point``, interpolated along the current line."""
+        point = np.round(point, _DECIMALS)
         distance = self._distance_along_line(point)
         if distance is None:
             direction = point - self._last
             self._open(self._last, SAMPLES, direction / np.abs(direction).max())
             distance = self._distance_along_line(point)
-        self._last = np.array(point)
+        self._last = point
         if distance is None or abs(distance) > self._distances[-1]:
             return float(self._evaluated(np.atleast_2d(point))[0])
-        return float(np.interp(distance, self._distances, self._values))
+        return round(float(np.interp(distance, self._distances, self._values)), _DECIMALS)
 
     def _open(self, start: np.ndarray, distances: np.ndarray, direction: np.ndarray) -> None:
         self._start, self._distances, self._direction = start, distances, direction
@@ -59,10 +65,10 @@ class LineEnergies:
         length = self._direction @ self._direction
         distance = (offset @ self._direction) / length if length else 0.0
         off_line = np.abs(offset - distance * self._direction).max()
-        return distance if off_line < 1e-9 else None
+        return round(float(distance), _DECIMALS) if off_line < 1e-9 else None
 
     def _evaluated(self, points: np.ndarray) -> np.ndarray:
-        values = self._energies(points)
+        values = np.round(self._energies(points), _DECIMALS)
         self.evaluations += len(points)
         lowest = int(np.argmin(values))
         if values[lowest] < self.best_energy:

@@ -61,7 +61,9 @@ def assembled(plan: Plan, proportions: Proportions, levels: tuple[Level, ...]) -
         offsets=offsets,
         tails=np.array([places[joint.tail] for joint in joints]) - origins,
         dofs=dofs,
-        cones={i: joint.cone for i, joint in enumerate(joints) if joint.cone is not None},
+        cones={
+            i: np.round(joint.cone, 9) for i, joint in enumerate(joints) if joint.cone is not None
+        },
         segment_names=tuple(segment.name for segment in segments),
         segment_joints=carriers,
         surfaces=tuple(
@@ -114,8 +116,8 @@ def _dofs(joints: tuple[Joint, ...]) -> Dofs:
         joints=np.array([index for index, _ in rows]),
         kinds=np.array([row.kind for _, row in rows]),
         axes=np.array([row.axis for _, row in rows]),
-        limits=np.array(
-            [np.multiply(row.limits, unit) for (_, row), unit in zip(rows, units, strict=True)]
+        limits=np.round(
+            [np.multiply(row.limits, unit) for (_, row), unit in zip(rows, units, strict=True)], 9
         ),
         rest_spread=np.array(
             [row.spread * unit for (_, row), unit in zip(rows, units, strict=True)]
