@@ -6,11 +6,11 @@ Lists of lists (cones, parts) are stored end to end with their starts, as in CSR
 from collections.abc import Iterable
 from itertools import pairwise
 from pathlib import Path
-from zipfile import BadZipFile
 
 import numpy as np
 
 from ..errors import MocapError
+from ..geometry.archive import read_archive
 from .body import Body, Dofs, Part, Surface
 
 VERSION = 1
@@ -66,11 +66,7 @@ def read_body(path: Path) -> Body:
         MocapError: no such file, not a body file, one of another version, or a damaged one.
     """
     remedy = "give the body.npz that fit or initialise wrote"
-    try:
-        with np.load(path, allow_pickle=False) as data:
-            stored = {name: data[name] for name in data.files}
-    except (OSError, ValueError, EOFError, TypeError, BadZipFile) as error:
-        raise MocapError("cannot be read as body.npz", remedy, file=path) from error
+    stored = read_archive(path, "body.npz", remedy)
     if "version" not in stored or "dof_names" not in stored:
         raise MocapError("is no body file", remedy, file=path)
     if stored["version"] != VERSION:

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import MocapError
+from ..geometry.archive import read_archive
 
 VERSION = 1
 
@@ -75,17 +76,11 @@ def read_motion(path: Path) -> Motion:
     """The motion stored in ``path``.
 
     Raises:
-        MocapError: no such file, not a motion file, or one of another version.
+        MocapError: no such file, not a motion file, a damaged one, or one of another version.
     """
-    try:
-        with np.load(path, allow_pickle=False) as data:
-            stored = {name: data[name] for name in data.files}
-    except (OSError, ValueError) as error:
-        raise MocapError(
-            "cannot be read as motion.npz", "give the file that fit wrote", file=path
-        ) from error
+    stored = read_archive(path, "motion.npz", "give the file that fit wrote")
     missing = [f.name for f in fields(Motion) if f.name not in stored]
-    if missing or int(stored["version"]) != VERSION:
+    if missing or not np.array_equal(stored.get("version"), VERSION):
         raise MocapError("is no motion file of this version", "run fit again", file=path)
     values = {f.name: stored[f.name] for f in fields(Motion)}
     for name in ("dof_names", "joint_names", "point_names", "camera_names"):

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import MocapError
+from ..geometry.archive import read_archive
 from ..geometry.arrays import frozen_array
 from .formats.trc import read_trc
 
@@ -64,24 +65,22 @@ def read_point_track(path: Path) -> PointTrack:
         raise MocapError("cannot be scored", "give a .npz or .trc file", file=path)
     try:
         return reader(path)
-    except FileNotFoundError as error:
-        raise MocapError("no such file", "check the path", file=path) from error
-    except (OSError, ValueError, KeyError, IndexError) as error:
+    except (ValueError, KeyError, IndexError) as error:
         raise MocapError(f"holds no points that can be read ({error})", file=path) from error
 
 
 def _read_npz(path: Path) -> PointTrack:
-    with np.load(path, allow_pickle=False) as data:
-        prefix = "point" if "points" in data else "joint"
-        points = data[f"{prefix}s"]
-        fps = np.ravel(data["fps"]).astype(float) if "fps" in data else None
-        return PointTrack(
-            names=tuple(str(name) for name in data[f"{prefix}_names"]),
-            frames=data["frames"] if "frames" in data else np.arange(len(points)),
-            points=points,
-            rotations=data.get("point_rotations"),
-            fps=None if fps is None else float(fps[0] / fps[1] if len(fps) == 2 else fps[0]),
-        )
+    data = read_archive(path, "motion.npz or truth.npz", "write it again")
+    prefix = "point" if "points" in data else "joint"
+    points = data[f"{prefix}s"]
+    fps = np.ravel(data["fps"]).astype(float) if "fps" in data else None
+    return PointTrack(
+        names=tuple(str(name) for name in data[f"{prefix}_names"]),
+        frames=data["frames"] if "frames" in data else np.arange(len(points)),
+        points=points,
+        rotations=data.get("point_rotations"),
+        fps=None if fps is None else float(fps[0] / fps[1] if len(fps) == 2 else fps[0]),
+    )
 
 
 def _read_trc(path: Path) -> PointTrack:

@@ -65,6 +65,8 @@ def read_trc(path: Path) -> Trajectories:
     """
     try:
         lines = path.read_text(encoding="utf-8").splitlines()
+    except FileNotFoundError as error:
+        raise MocapError("no such file", "check the path", file=path) from error
     except (OSError, UnicodeDecodeError) as error:
         raise MocapError("cannot be read as TRC", "give a .trc text file", file=path) from error
     if len(lines) < _DATA_LINE or not lines[0].startswith("PathFileType"):

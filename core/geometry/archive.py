@@ -1,0 +1,32 @@
+"""Arrays by name, as stored in .npz files."""
+
+import zlib
+from pathlib import Path
+from zipfile import BadZipFile
+
+import numpy as np
+
+from ..errors import MocapError
+
+# what numpy and zipfile raise on files that are cut short, changed or of another kind
+_DAMAGE = (OSError, ValueError, EOFError, TypeError, RuntimeError, BadZipFile, zlib.error)
+
+
+def read_archive(path: Path, kind: str, remedy: str) -> dict[str, np.ndarray]:
+    """All arrays of the .npz file ``path``; nothing is unpickled.
+
+    Args:
+        path: the file.
+        kind: what it should be, for the message.
+        remedy: what to advise when it is something else or damaged.
+
+    Raises:
+        MocapError: no such file, or no archive that can be read as a whole.
+    """
+    try:
+        with np.load(path, allow_pickle=False) as data:
+            return {name: data[name] for name in data.files}
+    except FileNotFoundError as error:
+        raise MocapError("no such file", "check the path", file=path) from error
+    except _DAMAGE as error:
+        raise MocapError(f"cannot be read as {kind}", remedy, file=path) from error
