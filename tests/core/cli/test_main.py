@@ -4,6 +4,7 @@ import os
 import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import numpy as np
@@ -189,10 +190,8 @@ sys.exit(main(sys.argv[1:]))
 """
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="signals of another kind")
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_a_signal_ends_a_fit_with_130_and_its_finished_frames(small_take, tmp_path, number):
-    words = ["fit", str(small_take), "--out", str(tmp_path)]
+def paused_in_frame_two(small_take, out) -> subprocess.Popen:
+    words = ["fit", str(small_take), "--out", str(out)]
     process = subprocess.Popen(
         [sys.executable, "-c", PAUSING, *words], stderr=subprocess.PIPE, text=True
     )
@@ -200,8 +199,31 @@ def test_a_signal_ends_a_fit_with_130_and_its_finished_frames(small_take, tmp_pa
     for line in process.stderr:
         if line.startswith("fit 2/4"):
             break
-    process.send_signal(number)
+    return process
+
+
+def check_that_it_kept_two_frames(process: subprocess.Popen, out):
     rest = process.stderr.read()
     assert process.wait(30) == 130, rest
-    np.testing.assert_array_equal(read_motion(tmp_path / "motion.npz").frames, [0, 1])
+    np.testing.assert_array_equal(read_motion(out / "motion.npz").frames, [0, 1])
     assert "the 2 finished frames are kept" in rest and "interrupted" in rest
+    assert "Traceback" not in rest
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals of another kind")
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_ends_a_fit_with_130_and_its_finished_frames(small_take, tmp_path, number):
+    process = paused_in_frame_two(small_take, tmp_path)
+    process.send_signal(number)
+    check_that_it_kept_two_frames(process, tmp_path)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals of another kind")
+@pytest.mark.parametrize("pause", [0.0, 0.02])
+def test_signals_until_the_very_end_change_nothing(small_take, tmp_path, pause):
+    process = paused_in_frame_two(small_take, tmp_path)
+    while process.poll() is None:
+        process.send_signal(signal.SIGINT)
+        process.send_signal(signal.SIGTERM)
+        time.sleep(pause)
+    check_that_it_kept_two_frames(process, tmp_path)
