@@ -1,6 +1,7 @@
 """``fit``: from a take to a motion and its files."""
 
 import argparse
+import math
 from dataclasses import replace
 from pathlib import Path
 
@@ -79,10 +80,11 @@ def _sum_up(result: FitResult, files: tuple[Path, ...]) -> None:
     )
     error = report["error_mm"]
     if error:
-        say(
-            f"error to the truth: {error['absolute']['mean']:.1f} mm, "
-            f"{error['offset_removed']['mean']:.1f} mm after removing constant offsets"
-        )
+        mean = error["offset_removed"]["mean"]
+        removed = f"{mean:.1f} mm after removing constant offsets"
+        if math.isnan(mean):
+            removed = "too few frames to remove constant offsets"
+        say(f"error to the truth: {error['absolute']['mean']:.1f} mm, {removed}")
     for path in files:
         say(f"wrote {path}")
     if report["lost_frames"]:

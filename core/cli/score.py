@@ -1,6 +1,7 @@
 """``score``: the error of a motion against a reference."""
 
 import argparse
+import math
 from pathlib import Path
 
 from ..motion.export_request import Exporter
@@ -71,16 +72,21 @@ def _print(result: Score) -> None:
         (f"offsets removed ({space} space)", result.offset_removed),
     ):
         say(f"  {name:<32}{_row(spread)}")
-    say(f"  absolute on the frames that offset removal judges: {result.offset_frames_absolute:.1f}")
+    judged = _shown(result.offset_frames_absolute)
+    say(f"  absolute on the frames that offset removal judges: {judged}")
     say(
         f"limbs lost {result.limb_losses} times, in {result.frames_with_a_lost_limb} frames; "
-        f"jitter {result.jitter:.2f} mm/frame²"
+        f"jitter {_shown(result.jitter, 2)} mm/frame²"
     )
     for name, point in result.points.items():
-        say(f"  {name:<32}{_row(point.error)}  offset removed {point.offset_removed:.1f}")
+        say(f"  {name:<32}{_row(point.error)}  offset removed {_shown(point.offset_removed)}")
 
 
 def _row(spread: Spread) -> str:
-    return "".join(
-        f"{value:8.1f}" for value in (spread.mean, spread.median, spread.p95, spread.max)
-    )
+    values = (spread.mean, spread.median, spread.p95, spread.max)
+    return "".join(f"{_shown(value):>8}" for value in values)
+
+
+def _shown(value: float, digits: int = 1) -> str:
+    """The number, or a dash where there are too few frames to have it."""
+    return f"{value:.{digits}f}" if math.isfinite(value) else "-"

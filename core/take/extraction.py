@@ -61,7 +61,8 @@ def make_plate(
         frames: first and last frame to look at, inclusive; None for the take's own.
 
     Raises:
-        MocapError: the take has no footage or names no plate, or a picture cannot be read.
+        MocapError: the take has no footage or names no plate, a picture cannot be read, or no
+            frame lies between the first and the last.
     """
     files = take.footage
     if files.video is None or files.plate is None:
@@ -73,6 +74,11 @@ def make_plate(
     first, last = take.frames or (footage.frames[0], footage.frames[-1])
     begin, end = frames
     span = (first if begin is None else begin, last if end is None else end)
+    if span[0] > span[1]:
+        raise MocapError(
+            f"there are no frames from {span[0]} to {span[1]}",
+            "give frames of the take", file=take.path,
+        )  # fmt: skip
     path = Path(for_camera(files.plate, camera))
     write_plate(path, plate_from(footage, span, recipe))
     return path

@@ -21,8 +21,10 @@ def inside(path: str | Path, root: Path, file: Path, key: str) -> Path:
     Path patterns keep their placeholders; links are followed in the part before them.
 
     Raises:
-        MocapError: it lies outside ``root``.
+        MocapError: it lies outside ``root``, or no file can be called so.
     """
+    if "\0" in str(path):
+        raise MocapError(f'"{key}" holds a NUL character', "remove it", file=file)
     full = os.path.normpath(file.parent / path)
     hit = _PLACEHOLDER.search(full)
     fixed = full[: hit.start()].rpartition(os.sep)[0] if hit else full

@@ -10,6 +10,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
+from ..body.templates import TEMPLATES
 from ..errors import MocapError
 from ..fitting.hierarchical import SETTINGS
 from .paths import PATH_KEYS, inside
@@ -233,6 +234,7 @@ def _performer(table: Table) -> Performer:
     if "#" in body:
         table.fault(f'a rig as "performer.body" ({body}) is not supported yet', 'use "performer"')
     return Performer(
-        body=Path(body) if body.endswith(".npz") and os.path.isabs(body) else body,
+        # paths are absolute by now
+        body=Path(body) if os.path.isabs(body) else table.choice("body", TEMPLATES, "performer"),
         height_m=table.number("height_m", lowest=0.0),
     )

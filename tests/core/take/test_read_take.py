@@ -215,3 +215,14 @@ def test_the_documented_captures_are_read():
     if not paths:
         pytest.skip("no captures beside the checkout")
     assert {read_take(path).performer.body for path in paths} == {"performer"}
+
+
+def test_an_unknown_body_names_the_take_and_the_known_ones(folder):
+    line = complaint(folder, MINIMAL + '[performer]\nbody = "centaur"\n')
+    assert "centaur" in line and "performer, sixteen_segment" in line
+
+
+@pytest.mark.parametrize("place", ["masks/\\u0000/{camera}.png", "{camera}/\\u0000.png"])
+def test_a_path_that_no_file_can_have_is_told_with_its_key(folder, place):
+    text = MINIMAL.replace("masks/{camera}/{frame:06d}.png", place)
+    assert '"footage.silhouettes"' in complaint(folder, text)

@@ -1,0 +1,63 @@
+"""What is wrong with the words or files given: one clear line that names it, and exit code 2."""
+
+import shutil
+
+import pytest
+from silhouette_mocap.core.cli import main
+
+
+@pytest.fixture
+def fault(capsys):
+    """The one line that a command complains with."""
+
+    def of(*words) -> str:
+        assert main([str(word) for word in words]) == 2
+        error = capsys.readouterr().err
+        assert error.count("\n") == 1
+        return error
+
+    return of
+
+
+@pytest.fixture
+def filmed_take(small_take, tmp_path):
+    """A copy of the small take whose masks pass for footage that needs a plate."""
+    folder = tmp_path / "session" / "small"
+    shutil.copytree(small_take.parent, folder)
+    text = small_take.read_text("utf-8").replace("silhouettes =", "video =")
+    text = text.replace("[performer]", 'plate = "plates/{camera}.png"\n[performer]')
+    (folder / "take.toml").write_text(text, "utf-8")
+    return folder / "take.toml"
+
+
+@pytest.mark.parametrize("frames", ["3:1", "9:"])
+def test_a_plate_of_no_frames_is_refused(filmed_take, fault, frames):
+    line = fault("plate", filmed_take, "--frames", frames)
+    assert str(filmed_take) in line and "give frames of the take" in line
+
+
+def test_a_score_that_cannot_be_written_names_the_file(small_take, tmp_path, fault):
+    truth, target = small_take.with_name("truth.npz"), tmp_path / "missing" / "score.json"
+    line = fault("score", truth, truth, "--json", target)
+    assert str(target) in line and "cannot be written (No such file or directory)" in line
+
+
+def test_numbers_that_there_are_too_few_frames_for_are_a_dash(small_take, capsys):
+    truth = str(small_take.with_name("truth.npz"))
+    assert main(["score", truth, truth, "--frames", "0:1"]) == 0
+    out = capsys.readouterr().out
+    assert "nan" not in out
+    removed = next(line for line in out.splitlines() if "offsets removed (" in line)
+    assert removed.split()[-4:] == ["-"] * 4
+
+
+def test_a_fit_too_short_for_offsets_says_so(quick_start, small_take, tmp_path, capsys):
+    assert main(["fit", str(small_take), "--out", str(tmp_path), "--frames", "0:1"]) == 0
+    out = capsys.readouterr().out
+    assert "too few frames to remove constant offsets" in out and "nan" not in out
+
+
+def test_a_damaged_truth_is_told(small_take, tmp_path, fault):
+    damaged = tmp_path / "truth.npz"
+    damaged.write_bytes(small_take.with_name("truth.npz").read_bytes()[:-100])
+    assert str(damaged) in fault("score", damaged, damaged)
