@@ -11,6 +11,7 @@ import cv2
 import numpy as np
 import scipy
 
+from ..errors import MocapError
 from ..fitting.tracking import FrameFit
 from .motion import Motion
 
@@ -48,10 +49,19 @@ def versions() -> dict[str, str]:
 
 
 def write_report(path: Path, report: dict) -> None:
-    """Writes ``report`` as JSON, whole or not at all; what is not finite becomes null."""
+    """Writes ``report`` as JSON, whole or not at all; what is not finite becomes null.
+
+    Raises:
+        MocapError: the file cannot be written.
+    """
+    text = json.dumps(_plain(report), indent=1, allow_nan=False) + "\n"
     partial = path.with_name(path.name + ".partial")
-    partial.write_text(json.dumps(_plain(report), indent=1, allow_nan=False) + "\n", "utf-8")
-    partial.replace(path)
+    try:
+        partial.write_text(text, "utf-8")
+        partial.replace(path)
+    except OSError as error:
+        problem = f"cannot be written ({error.strerror})"
+        raise MocapError(problem, "check the folder", file=path) from error
 
 
 def _plain(value):

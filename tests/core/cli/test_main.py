@@ -139,7 +139,7 @@ def test_info_names_everything_that_is_missing(small_take, tmp_path, capsys):
         (folder / "masks" / name).symlink_to(small_take.parent / "masks" / name)
     (folder / "masks" / "cam_03").unlink()
     (folder / "calibration.toml").write_bytes(small_take.with_name("calibration.toml").read_bytes())
-    text = small_take.read_text("utf-8").replace("sixteen_segment", "centaur")
+    text = small_take.read_text("utf-8").replace("sixteen_segment", "centaur.npz")
     (folder / "take.toml").write_text(text, "utf-8")
     root = str(tmp_path.parent.parent)
     assert main(["info", str(folder / "take.toml"), "--root", root]) == 2
