@@ -4,6 +4,8 @@ Files are read and written through memory: ``cv2.imread`` and ``cv2.imwrite`` ca
 beyond the local code page on Windows.
 """
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import cv2
@@ -53,12 +55,24 @@ def read_picture(
     # unchanged keeps alpha but ignores the orientation tag, which only JPEG files carry in practice
     unchanged = data[:2].tobytes() != _JPEG_MAGIC
     flags = cv2.IMREAD_UNCHANGED if unchanged else cv2.IMREAD_ANYCOLOR | cv2.IMREAD_ANYDEPTH
-    picture = cv2.imdecode(data, flags) if data.size else None
+    with _decoder_silenced():
+        picture = cv2.imdecode(data, flags) if data.size else None
     if picture is None:
         raise MocapError(
             "is no picture that can be decoded, or is cut short", "export it again", **place
         )
     return picture
+
+
+@contextmanager
+def _decoder_silenced() -> Iterator[None]:
+    """OpenCV would tell of damaged pictures on standard error, beside our own line."""
+    level = cv2.getLogLevel()
+    cv2.setLogLevel(0)
+    try:
+        yield
+    finally:
+        cv2.setLogLevel(level)
 
 
 def write_picture(path: Path, picture: np.ndarray, flags: tuple[int, ...] = ()) -> None:

@@ -96,6 +96,18 @@ def test_a_cut_off_picture_is_refused_with_its_name(tmp_path):
         open_footage(tmp_path / "{frame}.png", "left")
 
 
+@pytest.mark.parametrize("suffix", [".png", ".jpg", ".webp", ".tif"])
+def test_a_damaged_picture_is_told_by_us_alone(tmp_path, suffix, capfd):
+    path = tmp_path / f"0{suffix}"
+    write_picture(path, np.random.default_rng(0).integers(0, 255, (40, 40, 3), np.uint8))
+    path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
+    level = cv2.getLogLevel()
+    with pytest.raises(MocapError, match="cut short"):
+        read_picture(path)
+    assert capfd.readouterr().err == ""
+    assert cv2.getLogLevel() == level
+
+
 def test_sixteen_bit_and_grey_pictures_become_eight_bit_colour(tmp_path):
     write_picture(tmp_path / "deep.png", np.full((4, 5), 257 * 200, np.uint16))
     picture = read_picture(tmp_path / "deep.png")
