@@ -99,22 +99,20 @@ def clavicle(bone: np.ndarray) -> Joint:
 
 def shoulder(parent: str) -> Joint:
     """Swing and twist of the left upper arm."""
-    return _ball("left_shoulder", parent, "left_elbow", ARM, ((-60, 180), (-30, 180), 90), "arm")
+    ranges = ((-60, 180), (-30, 180), 90)
+    return Joint("left_shoulder", parent, "left_elbow", *_ball("left_shoulder", ARM, ranges, "arm"))
 
 
 def hip() -> Joint:
     """Swing and twist of the left thigh."""
-    return _ball("left_hip", "root", "left_knee", LEG, ((-30, 125), (-30, 45), 45), "thigh")
+    ranges = ((-30, 125), (-30, 45), 45)
+    return Joint("left_hip", "root", "left_knee", *_ball("left_hip", LEG, ranges, "thigh"))
 
 
 def _ball(
-    name: str,
-    parent: str,
-    tail: str,
-    bone: np.ndarray,
-    ranges: tuple[Range, Range, float],
-    limb: str,
-) -> Joint:
+    name: str, bone: np.ndarray, ranges: tuple[Range, Range, float], limb: str
+) -> tuple[tuple[Row, ...], np.ndarray]:
+    """Rows and swing cone of a ball joint; flexion, abduction and twist in degrees."""
     axes = swing_axes(bone, FORWARD, LEFT)
     cone = hanging_cone(bone, axes, *ranges[:2])
     flexion, abduction = np.degrees([cone.min(axis=0), cone.max(axis=0)]).T
@@ -145,7 +143,7 @@ def _ball(
             f"turns the {limb} inwards",
         ),
     )
-    return Joint(name, parent, tail, rows, cone)
+    return rows, cone
 
 
 def elbow() -> Joint:
