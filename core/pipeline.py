@@ -23,11 +23,10 @@ from .progress import Progress
 from .rendering.native import NativeEvaluator
 from .rendering.reference import ReferenceEvaluator
 from .silhouettes.silhouette import Silhouette
-from .take.results import FitResult, Outcome, made_folder, write_results
+from .take.results import OVERLAY, FitResult, Outcome, made_folder, write_results
 from .take.take import Search, Take
 from .take.views import Views, open_views
 
-OVERLAY = "overlay.mp4"
 _MOST_INITIAL_FRAMES = 8
 Silhouettes = tuple[Silhouette, ...]
 """One frame's, camera by camera."""
@@ -96,7 +95,7 @@ def fit(take: Take, request: FitRequest, progress: Progress) -> FitResult:
         notes = (*views.notes, *first.notes)
         with request.shield():
             outcome = Outcome(take, views, first.body, fits, settings, notes)
-            return write_results(outcome, request.out)
+            return write_results(outcome, request.out, progress)
 
     progress.begin("fit", views.frames[1] - views.frames[0] + 1)
     with OverlayVideo(request.out / OVERLAY, float(take.fps)) as overlay:
@@ -105,11 +104,11 @@ def fit(take: Take, request: FitRequest, progress: Progress) -> FitResult:
                 fits.append(found)
                 overlay.add(found.frame, _overlay(tracker.evaluator, views, found, seen))
                 progress.advance(found.frame, found.seconds, float(np.nanmean(found.scores.iou)))
+            result = save()
         except BaseException:
             if fits:
-                progress.note(f"the {len(fits)} finished frames are kept in {save().files[0]}")
+                save()
             raise
-        result = save()
         overlay.write()
     return FitResult(result.motion, result.report, (*result.files, overlay.path))
 

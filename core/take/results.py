@@ -1,23 +1,28 @@
 """What a fit leaves in its folder: motion.npz, body.npz and report.json."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+
+import numpy as np
 
 from ..body.body import Body
 from ..body.file import write_body
 from ..cameras.arrangement import millimetres_per_pixel
+from ..cameras.camera import Camera
 from ..errors import MocapError
 from ..fitting.tracking import FrameFit
-from ..motion.motion import Motion, write_motion
+from ..motion.motion import Motion, read_motion, write_motion
 from ..motion.point_track import PointTrack, read_point_track
 from ..motion.recording import recorded
 from ..motion.report import fit_quality, versions, write_report
 from ..motion.scoring import score
-from .take import Take
+from ..progress import Progress
+from .take import EXPORTS, Take
 from .views import Views
 
 MOTION, BODY, REPORT = "motion.npz", "body.npz", "report.json"
+OVERLAY = "overlay.mp4"
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,13 +60,32 @@ class Outcome:
     settings: dict[str, object]
     notes: tuple[str, ...]
 
+    @property
+    def finished(self) -> bool:
+        """Whether all frames were tracked."""
+        first, last = self.views.frames
+        return len(self.fits) == last - first + 1
 
-def write_results(outcome: Outcome, folder: Path) -> FitResult:
-    """Writes the three files, each whole or not at all."""
-    take, views = outcome.take, outcome.views
+
+def write_results(outcome: Outcome, folder: Path, progress: Progress) -> FitResult:
+    """Writes the three files, each whole or not at all; nothing that may fail comes before them.
+
+    An unfinished fit leaves an earlier one of more frames alone and writes motion.partial.npz and
+    so on beside it.
+    """
+    take, views, notes = outcome.take, outcome.views, list(outcome.notes)
+
+    def tell(note: str) -> None:
+        notes.append(note)
+        progress.note(note)
+
     motion = recorded(
         outcome.fits, outcome.body, [camera.name for camera in views.cameras], take.fps
     )
+    files = _places(outcome, folder)
+    write_motion(files[0], motion)
+    write_body(files[1], outcome.body)
+    _tell_files(outcome, files[0], tell)
     report = {
         "take": take.name,
         "settings": {
@@ -71,16 +95,42 @@ def write_results(outcome: Outcome, folder: Path) -> FitResult:
             **outcome.settings,
         },
         "versions": versions(),
-        "notes": list(outcome.notes),
         "cameras": _camera_facts(views, motion),
         **fit_quality(motion, outcome.fits),
-        "error_mm": _error(take, motion),
+        "error_mm": _error(take, motion, tell),
+        "notes": notes,
     }
-    files = tuple(folder / name for name in (MOTION, BODY, REPORT))
-    write_motion(files[0], motion)
-    write_body(files[1], outcome.body)
     write_report(files[2], report)
     return FitResult(motion, report, files)
+
+
+def _places(outcome: Outcome, folder: Path) -> tuple[Path, ...]:
+    paths = tuple(folder / name for name in (MOTION, BODY, REPORT))
+    if outcome.finished or not paths[0].exists():
+        return paths
+    try:
+        spared = len(read_motion(paths[0]).frames) > len(outcome.fits)
+    except MocapError:
+        # of another version, perhaps: whatever it is, it may be worth more
+        spared = True
+    return tuple(map(_partial, paths)) if spared else paths
+
+
+def _partial(path: Path) -> Path:
+    return path.with_suffix(f".partial{path.suffix}")
+
+
+def _tell_files(outcome: Outcome, motion: Path, tell: Callable[[str], None]) -> None:
+    spared = motion.name != MOTION
+    if not outcome.finished:
+        beside = f", beside the longer {MOTION} of an earlier fit" if spared else ""
+        tell(f"the {len(outcome.fits)} finished frames are kept in {motion}{beside}")
+    names = [OVERLAY] * (not outcome.finished)
+    names += [f"{outcome.take.name}.{suffix}" for suffix in EXPORTS]
+    names += [_partial(motion).name]
+    older = [name for name in names if (motion.parent / name).exists()]
+    if older and not spared:
+        tell(f"from an earlier fit, unless written again now: {', '.join(older)}")
 
 
 def _camera_facts(views: Views, motion: Motion) -> dict[str, dict]:
@@ -91,22 +141,29 @@ def _camera_facts(views: Views, motion: Motion) -> dict[str, dict]:
             "footage_size": list(view.source.footage.size),
             "working_size": list(view.camera.size),
             "reduced_by": view.reduction.factor,
-            "mm_per_px": millimetres_per_pixel(view.camera, centre),
+            "mm_per_px": _scale(view.camera, centre),
         }
         for view in views.views
     }
 
 
-def _error(take: Take, motion: Motion) -> dict | None:
+def _scale(camera: Camera, point: np.ndarray) -> float | None:
+    """Millimetres per px at a world point (3,); None where the camera has it at its back."""
+    return millimetres_per_pixel(camera, point) if camera.depths(point) > 0 else None
+
+
+def _error(take: Take, motion: Motion, tell: Callable[[str], None]) -> dict | None:
     """The error against the truth beside the take, where there is one for these frames."""
     path = take.path.parent / "truth.npz"
     if not path.exists():
         return None
-    truth = read_point_track(path).between(int(motion.frames[0]), int(motion.frames[-1]))
-    if not len(truth.frames):
-        return None
     found = PointTrack(motion.point_names, motion.frames, motion.points)
-    return score(truth, found).as_dict()
+    try:
+        truth = read_point_track(path).between(int(motion.frames[0]), int(motion.frames[-1]))
+        return score(truth, found).as_dict() if len(truth.frames) else None
+    except MocapError as error:
+        tell(f"no error to the truth: {error}")
+        return None
 
 
 def made_folder(path: Path) -> Path:
