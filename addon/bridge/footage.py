@@ -6,6 +6,7 @@ import bpy
 import numpy as np
 
 from ...core.errors import MocapError
+from ...core.footage.patterns import for_frame, has_frame
 
 
 def show_footage(camera: bpy.types.Object, footage: str, frames: np.ndarray) -> None:
@@ -20,8 +21,8 @@ def show_footage(camera: bpy.types.Object, footage: str, frames: np.ndarray) -> 
         MocapError: the first picture or the video cannot be opened.
     """
     first, last = int(frames[0]), int(frames[-1])
-    sequence = "{frame" in footage
-    path = Path(footage.format(frame=first) if sequence else footage)
+    sequence = has_frame(footage)
+    path = for_frame(footage, first) if sequence else Path(footage)
     background = camera.data.background_images.new()
     background.image = _opened(path, camera.name)
     background.alpha = 1.0

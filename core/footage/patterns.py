@@ -25,6 +25,12 @@ def for_frame(pattern: str, frame: int) -> Path:
     return Path(_FRAME.sub(lambda hit: format(frame, (hit[1] or "") + "d"), pattern))
 
 
+def ends_in_frame(pattern: str) -> bool:
+    """Whether the frame is the one and last number in the file's name, as players count files."""
+    last = re.search(_FRAME.pattern + r"\D*$", Path(pattern).stem)
+    return last is not None and len(_FRAME.findall(pattern)) == 1
+
+
 def numbered_files(pattern: str) -> dict[int, Path]:
     """The files on disk that fit ``pattern``, by frame number, in rising order."""
     found = {}

@@ -7,18 +7,22 @@ import cv2
 import numpy as np
 
 from ..errors import MocapError
+from ..footage.patterns import ends_in_frame, has_frame
 from ..footage.pictures import colour_picture
 from .views import View
 
 
 def shown_footage(views: Sequence[View], last: int, fps: float, folder: Path) -> dict[str, str]:
-    """Camera name -> its footage; that of distorting lenses is written undistorted.
+    """Camera name -> its footage, as Blender can show it.
+
+    That of distorting lenses is written undistorted, and folders of pictures whose names do not
+    end in the frame's number are written as videos.
 
     Args:
         views: the cameras.
         last: the last frame that will be shown.
         fps: frames per second.
-        folder: undistorted videos go into its ``footage``.
+        folder: written videos go into its ``footage``.
 
     Returns:
         Path patterns of pictures, or videos whose first picture is frame 0.
@@ -26,16 +30,20 @@ def shown_footage(views: Sequence[View], last: int, fps: float, folder: Path) ->
     found = {}
     for view in views:
         name = view.undistortion.camera.name
-        if view.undistortion.is_identity:
+        if view.undistortion.is_identity and _can_be_shown(view.place):
             found[name] = view.place
         else:
             path = folder / "footage" / f"{name}.mp4"
-            _write_undistorted(view, last, fps, path)
+            _write_video(view, last, fps, path)
             found[name] = str(path)
     return found
 
 
-def _write_undistorted(view: View, last: int, fps: float, path: Path) -> None:
+def _can_be_shown(place: str) -> bool:
+    return ends_in_frame(place) if has_frame(place) else Path(place).is_file()
+
+
+def _write_video(view: View, last: int, fps: float, path: Path) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     footage, camera = view.source.footage, view.undistortion.camera
     partial = path.with_name(f".{path.name}.partial.mp4")

@@ -44,6 +44,15 @@ def test_a_picture_sequence_shows_the_file_with_the_number_of_the_frame(camera, 
         assert shown_path(camera) == str(tmp_path / f"{frame:06d}.png")
 
 
+def test_a_folder_may_have_braces_in_its_name(camera, tmp_path):
+    folder = tmp_path / "br{raw}"
+    folder.mkdir()
+    cv2.imwrite(str(folder / "000005.png"), np.zeros((48, 64), np.uint8))
+    show_footage(camera, str(folder / "{frame:06d}.png"), FRAMES)
+    bpy.context.scene.frame_set(5)
+    assert shown_path(camera) == str(folder / "000005.png")
+
+
 def test_a_video_shows_the_picture_of_the_frame_counted_from_zero(camera, tmp_path):
     path = tmp_path / "cam01.mp4"
     video = cv2.VideoWriter(str(path), cv2.VideoWriter_fourcc(*"mp4v"), 15, (64, 48))
