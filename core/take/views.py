@@ -111,19 +111,35 @@ def open_views(
     settings = CalibrationSettings(take.cameras.format, take.cameras.units, take.cameras.up)
     names = read_camera_names(take.cameras.calibration, settings)
     used = _used_names(take, names, without)
+    _check_patterns(take)
     pattern = footage_pattern(take)
-    footage = {name: open_footage(pattern, name, take.frames) for name in used}
+    span = None if take.frames is None else _narrowed(take, take.frames, frames)
+    footage = {name: open_footage(pattern, name, span) for name in used}
+    if len(used) < _FEWEST_CAMERAS:
+        raise MocapError(
+            f"{len(used)} camera left", f"use at least {_FEWEST_CAMERAS}", file=take.path
+        )
     settings = replace(settings, sizes={name: f.size for name, f in footage.items()})
     calibration = read_calibration(take.cameras.calibration, settings)
     cameras = [camera for camera in calibration.cameras if camera.name in used]
     views = tuple(_view(take, camera, footage[camera.name]) for camera in cameras)
     notes = [*calibration.notes, *_opposite_notes(cameras), *_rate_notes(take, footage)]
-    return Views(views, _narrowed(take, footage, frames), tuple(notes))
+    return Views(views, span or _narrowed(take, _common(footage), frames), tuple(notes))
 
 
 def footage_pattern(take: Take) -> str:
     """Where the pictures of all cameras are."""
     return take.footage.silhouettes or take.footage.video or ""
+
+
+def _check_patterns(take: Take) -> None:
+    for key in ("silhouettes", "video", "plate"):
+        pattern = getattr(take.footage, key)
+        if pattern is not None and for_camera(pattern, "") == pattern:
+            raise MocapError(
+                f'"footage.{key}" gives all cameras the same pictures',
+                "write {camera} where the cameras' names stand in the path", file=take.path,
+            )  # fmt: skip
 
 
 def _used_names(take: Take, names: Sequence[str], without: Sequence[str]) -> tuple[str, ...]:
@@ -139,12 +155,7 @@ def _used_names(take: Take, names: Sequence[str], without: Sequence[str]) -> tup
                 f'a camera called "{name}" cannot name files', "rename it",
                 file=take.cameras.calibration,
             )  # fmt: skip
-    used = tuple(name for name in names if name not in without)
-    if len(used) < _FEWEST_CAMERAS:
-        raise MocapError(
-            f"{len(used)} camera left", f"use at least {_FEWEST_CAMERAS}", file=take.path
-        )
-    return used
+    return tuple(name for name in names if name not in without)
 
 
 def _view(take: Take, calibrated: Camera, footage: Footage) -> View:
@@ -208,17 +219,23 @@ EXTRACTORS: dict[str, Callable[[Plate, Table], Extractor]] = {
 }
 
 
+def _common(footage: dict[str, Footage]) -> tuple[int, int]:
+    """First and last frame, inclusive, that all cameras filmed."""
+    filmed = [f.frames for f in footage.values()]
+    return max(frames[0] for frames in filmed), min(frames[-1] for frames in filmed)
+
+
 def _narrowed(
-    take: Take, footage: dict[str, Footage], wanted: tuple[int | None, int | None]
+    take: Take, whole: tuple[int, int], wanted: tuple[int | None, int | None]
 ) -> tuple[int, int]:
-    """First and last frame, inclusive."""
-    if take.frames is not None:
-        first, last = take.frames
-    else:
-        first = max(f.frames[0] for f in footage.values())
-        last = min(f.frames[-1] for f in footage.values())
+    """First and last frame, inclusive, that are ``wanted`` of the ``whole`` take."""
+    first, last = whole
     begin = first if wanted[0] is None else wanted[0]
     end = last if wanted[1] is None else wanted[1]
+    if None not in wanted and begin > end:
+        raise MocapError(
+            f"the first frame wanted, {begin}, comes after the last, {end}", "swap them"
+        )
     if not first <= begin <= end <= last:
         raise MocapError(
             f"frames {begin} to {end} lie outside the take's, {first} to {last}",

@@ -64,6 +64,22 @@ def test_a_camera_can_be_left_out_and_frames_narrowed(folder):
     assert views.frames == (1, 3)
 
 
+def test_only_the_frames_that_are_wanted_must_be_there(folder):
+    (folder / "masks/cam_04/000002.png").unlink()
+    assert open_views(read_take(folder / "take.toml"), (), (0, 1)).frames == (0, 1)
+    with pytest.raises(MocapError, match="camera cam_04, frame 2: missing"):
+        open_views(read_take(folder / "take.toml"))
+
+
+def test_one_place_for_the_pictures_of_all_cameras_is_refused(folder):
+    take = footage_take(folder, ('plate = "{camera}_plate.png"', 'plate = "cam_01_plate.png"'))
+    with pytest.raises(MocapError, match=r'"footage\.plate" gives all cameras the same pictures'):
+        open_views(take)
+    take = changed(folder, ("video/{camera}/", "video/cam_01/"))
+    with pytest.raises(MocapError, match=r'"footage\.video" .* write \{camera\} where'):
+        open_views(take)
+
+
 def test_without_frames_in_the_take_all_footage_counts(folder):
     (folder / "masks/cam_04/000003.png").unlink()
     take = changed(folder, ("frames = [0, 3]\n", ""))
@@ -75,7 +91,8 @@ def test_without_frames_in_the_take_all_footage_counts(folder):
     [
         (["cam_9"], (None, None), 'no camera "cam_9"; the cameras are cam_01'),
         (["cam_01", "cam_02", "cam_03", "cam_04"], (None, None), "1 camera left; use at least 2"),
-        ([], (2, 1), "frames 2 to 1 lie outside"),
+        ([], (2, 1), "first frame wanted, 2, comes after the last, 1; swap them"),
+        ([], (4, None), "frames 4 to 3 lie outside the take's, 0 to 3"),
         ([], (None, 4), "frames 0 to 4 lie outside the take's, 0 to 3"),
     ],
 )
