@@ -14,7 +14,7 @@ part (4.2).
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -23,16 +23,17 @@ from ..body.kinematics import clamped
 from ..body.limits import Limits
 from ..cameras.camera import Camera
 from ..energy.evaluator import Evaluator
-from ..energy.weight_maps import halved, xor_weight_maps
-from ..optimisers.downhill import downhill
+from ..energy.weight_maps import halved, halved_camera, xor_weight_maps
+from ..optimisers.downhill import Effort, downhill
 from ..optimisers.grid import grid_points, lowest
 from ..silhouettes.silhouette import Silhouette
-from .part_search import FORBIDDEN, PartEnergy, first_steps, leaves_window, part_windows
+from .part_search import FORBIDDEN, PartEnergy, Tally, first_steps, part_windows, rest_prior
 from .torso_volume import TorsoVolume
 
 EvaluatorFactory = Callable[[Body, tuple[Camera, ...]], Evaluator]
 
 _WINDOW_SIDES = {"limb": 128, "end": 64}
+_LEAST_AREA = 0.2
 
 
 @dataclass(frozen=True)
@@ -45,7 +46,7 @@ class HierarchicalSettings:
         search_prediction: whether the grid is laid around the predicted pose too.
         fine_torso: whether the torso goes on at full resolution from the second round.
         rounds: most repetitions of steps 1 to 3.
-        sweeps: most passes of a downhill search over its directions.
+        effort: of each downhill search.
         prior_share: energy of one standard deviation from the rest pose, as a share of the
             silhouettes' area.
     """
@@ -55,14 +56,19 @@ class HierarchicalSettings:
     search_prediction: bool = True
     fine_torso: bool = True
     rounds: int = 5
-    sweeps: int = 3
+    effort: Effort = field(default_factory=Effort)
     prior_share: float = 1e-3
 
 
 ROBUST = HierarchicalSettings()
 ROBUST_FAST = HierarchicalSettings(grid_steps=7, grid_half_width=np.radians(45))
 FAITHFUL = HierarchicalSettings(
-    3, np.radians(12), search_prediction=False, fine_torso=False, prior_share=0.0
+    grid_steps=3,
+    grid_half_width=np.radians(12),
+    search_prediction=False,
+    fine_torso=False,
+    effort=Effort(whole_lines=False),
+    prior_share=0.0,
 )
 FAITHFUL_FAST = replace(FAITHFUL, grid_steps=4, grid_half_width=np.radians(35))
 SETTINGS = {"robust": (ROBUST, ROBUST_FAST), "faithful": (FAITHFUL, FAITHFUL_FAST)}
@@ -76,14 +82,12 @@ class PoseFit:
     Attributes:
         pose: (D,).
         energy: px that differ, summed over views.
-        evaluations: candidates evaluated.
-        windows_left: how often a part was left outside their window in some view.
+        tally: what the search took.
     """
 
     pose: np.ndarray
-    energy: float
-    evaluations: int
-    windows_left: int
+    energy: int
+    tally: Tally
 
 
 class HierarchicalTracker:
@@ -96,7 +100,7 @@ class HierarchicalTracker:
         make_evaluator: EvaluatorFactory,
         settings: HierarchicalSettings = ROBUST,
     ):
-        half = tuple(c.scaled(0.5, ((c.size[0] + 1) // 2, (c.size[1] + 1) // 2)) for c in cameras)
+        half = tuple(halved_camera(camera) for camera in cameras)
         self.body = body
         self.cameras = cameras
         self.settings = settings
@@ -118,44 +122,58 @@ class _FrameSearch:
     def __init__(self, tracker: HierarchicalTracker, silhouettes, last, predicted):
         self.tracker = tracker
         maps = xor_weight_maps(silhouettes)
+        self.observed_px = int(maps.constants.sum())
         self.weights = tracker.evaluator.prepared(maps)
         self.half_weights = tracker.half_evaluator.prepared(halved(maps))
-        self.prior_px = tracker.settings.prior_share * float(maps.constants.sum())
-        self.last, self.predicted = clamped(tracker.body, np.stack([last, predicted]))
-        self.evaluations = 0
-        self.windows_left = 0
-        energies = self._whole_energies(np.stack([self.last, self.predicted]))
-        self.pose = (self.last, self.predicted)[int(np.argmin(energies))].copy()
-        self.energy = float(energies.min())
+        self.prior_px = tracker.settings.prior_share * self.observed_px
+        self.tally = Tally()
+        poses = clamped(tracker.body, np.stack([last, predicted]))
+        self.last, self.predicted = poses
+        costs = self._costs(poses if tracker.settings.search_prediction else poses[:1])
+        self.pose, self.cost = poses[int(np.argmin(costs))].copy(), float(costs.min())
+        self.windows = {
+            part.name: part_windows(tracker.evaluator, self.last, part, _WINDOW_SIDES[part.role])
+            for part in tracker.body.parts
+            if part.role in _WINDOW_SIDES
+        }
 
     def run(self) -> PoseFit:
-        for number in range(self.tracker.settings.rounds):
-            before, energy_before = self.pose.copy(), self.energy
+        rounds = 0 if self._shows_nobody() else self.tracker.settings.rounds
+        for number in range(rounds):
+            before, cost_before = self.pose.copy(), self.cost
             for part in self.tracker.body.parts:
                 self._search(part, number)
-            self.energy = float(self._whole_energies(self.pose[None])[0])
-            if self.energy > energy_before:
-                self.pose, self.energy = before, energy_before
-            if self._converged(before, energy_before):
+            self.cost = float(self._costs(self.pose[None])[0])
+            if self.cost > cost_before:
+                self.pose, self.cost = before, cost_before
+            if self._converged(before, cost_before):
                 break
-        return PoseFit(self.pose, self.energy, self.evaluations, self.windows_left)
+        prior = self.prior_px * rest_prior(self.tracker.body, self.pose[None])[0]
+        return PoseFit(self.pose, round(self.cost - prior), self.tally)
+
+    def _shows_nobody(self) -> bool:
+        """Whether the silhouettes hold a fraction only of what the last pose covers.
+
+        A search would then walk the body out of the pictures, from where none leads back.
+        """
+        covered = sum(np.count_nonzero(p) for p in self.tracker.evaluator.silhouettes(self.last))
+        if self.observed_px >= _LEAST_AREA * covered:
+            return False
+        self.pose = self.last.copy()
+        self.cost = float(self._costs(self.pose[None])[0])
+        return True
 
     def _search(self, part: Part, number: int) -> None:
         settings = self.tracker.settings
-        windows = self._windows(part)
         coarse = part.role == "torso" and not (settings.fine_torso and number > 0)
-        energy = self._part_energy(part, windows, coarse)
+        energy = self._part_energy(part, coarse)
         dofs = list(part.dofs)
         if number == 0 and part.grid:
             self._search_grid(part, energy)
         steps = first_steps(energy.evaluator, self.pose, part, tip_px=2.0)
-        found = downhill(energy, self.pose[dofs], steps, settings.sweeps, tolerance=2e-3)
-        self.evaluations += found.evaluations
+        found = downhill(energy, self.pose[dofs], steps, settings.effort)
         if found.energy < FORBIDDEN:
             self.pose[dofs] = found.point
-        if windows is not None:
-            bounds = self.tracker.evaluator.bounds(self.pose[None], part.segments)[0]
-            self.windows_left += leaves_window(bounds, windows)
 
     def _search_grid(self, part: Part, energy: PartEnergy) -> None:
         settings = self.tracker.settings
@@ -167,33 +185,35 @@ class _FrameSearch:
             grid_points(centre[dofs], settings.grid_half_width, settings.grid_steps, axes)
             for centre in centres
         ]
-        found = lowest(energy, np.concatenate(points))
-        self.evaluations += found.evaluations
-        self.pose[dofs] = found.point
+        self.pose[dofs] = lowest(energy, np.concatenate(points)).point
 
-    def _windows(self, part: Part) -> np.ndarray | None:
-        if part.role not in _WINDOW_SIDES:
-            return None
-        side = _WINDOW_SIDES[part.role]
-        return part_windows(self.tracker.evaluator, self.pose, part, side)
-
-    def _part_energy(self, part: Part, windows: np.ndarray | None, coarse: bool) -> PartEnergy:
-        tracker = self.tracker
+    def _part_energy(self, part: Part, coarse: bool) -> PartEnergy:
+        tracker, windows = self.tracker, self.windows.get(part.name)
         if coarse:
             evaluator, weights = tracker.half_evaluator, self.half_weights
         else:
             evaluator = tracker.evaluator
             weights = evaluator.masked(self.weights, self.pose, part.segments, windows)
-        torso = tracker.torso_volume if part.role == "limb" else None
-        limits = tracker.limits[part.name]
-        return PartEnergy(evaluator, weights, self.pose.copy(), part, limits, torso, self.prior_px)
+        return PartEnergy(
+            evaluator,
+            weights,
+            self.pose.copy(),
+            part,
+            tracker.limits[part.name],
+            tracker.torso_volume if part.role in _WINDOW_SIDES else None,
+            windows,
+            self.prior_px,
+            self.tally,
+        )
 
-    def _whole_energies(self, poses: np.ndarray) -> np.ndarray:
-        self.evaluations += len(poses)
-        return self.tracker.evaluator.energies(self.weights, poses).sum(axis=1)
+    def _costs(self, poses: np.ndarray) -> np.ndarray:
+        """(N,) energies of whole poses with the rest prior."""
+        self.tally.evaluated += len(poses)
+        pixels = self.tracker.evaluator.energies(self.weights, poses).sum(axis=1)
+        return np.round(pixels + self.prior_px * rest_prior(self.tracker.body, poses), 6)
 
-    def _converged(self, before: np.ndarray, energy_before: float) -> bool:
+    def _converged(self, before: np.ndarray, cost_before: float) -> bool:
         kinds = self.tracker.body.dofs.kinds
         change = np.abs(self.pose - before)
         still = change[kinds == 0].max() < 5e-4 and change[kinds != 0].max() < np.radians(0.1)
-        return still or energy_before - self.energy < 0.002 * energy_before
+        return still or cost_before - self.cost < 0.002 * cost_before

@@ -1,10 +1,11 @@
 """Searching one part of the body while the rest stands still (Theobalt et al. 2003, section 3)."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from ..body.body import Part
+from ..body.body import Body, Part
 from ..body.limits import Limits
 from ..cameras.camera import Camera
 from ..energy.evaluator import Evaluator, Weights
@@ -12,6 +13,19 @@ from .torso_volume import TorsoVolume
 
 FORBIDDEN = 1e9
 """Energy of a candidate beyond the limits or inside the torso; it is never rendered."""
+
+
+@dataclass
+class Tally:
+    """What searching a frame took.
+
+    Attributes:
+        evaluated: candidates rendered and compared.
+        outside_windows: candidates among them that reached out of their part's window.
+    """
+
+    evaluated: int = 0
+    outside_windows: int = 0
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,8 +41,10 @@ class PartEnergy:
         pose: (D,) the whole body's pose.
         part: what is searched.
         limits: of the part's DOFs.
-        torso: volume that limbs must stay out of; None for parts that cannot enter it.
+        torso: volume that the part must stay out of; None for parts that hold it.
+        windows: (V, 4) px outside of which the weights are 0; None for whole pictures.
         prior_px: energy in px of one standard deviation away from the rest pose.
+        tally: counts what is evaluated.
     """
 
     evaluator: Evaluator
@@ -37,26 +53,38 @@ class PartEnergy:
     part: Part
     limits: Limits
     torso: TorsoVolume | None
+    windows: np.ndarray | None
     prior_px: float
+    tally: Tally
 
     def __call__(self, values: np.ndarray) -> np.ndarray:
         """(N,) energies of values (N, n)."""
-        part = self.part
         poses = np.repeat(self.pose[None], len(values), axis=0)
-        poses[:, part.dofs] = values
+        poses[:, self.part.dofs] = values
         allowed = self.limits.allow(values)
         if self.torso is not None:
             transforms = self.evaluator.transforms(poses[allowed])
-            allowed[allowed] = ~self.torso.holds_limb(transforms, part)
+            allowed[allowed] = ~self.torso.holds_part(transforms, self.part)
         energies = np.full(len(values), FORBIDDEN)
         if allowed.any():
-            per_view = self.evaluator.energies(self.weights, poses[allowed], part.segments)
-            energies[allowed] = np.round(per_view.sum(axis=1) + self._prior(values[allowed]), 6)
+            prior = rest_prior(self.evaluator.body, values[allowed], self.part.dofs)
+            pixels = self._pixels(poses[allowed])
+            energies[allowed] = np.round(pixels + self.prior_px * prior, 6)
         return energies
 
-    def _prior(self, values: np.ndarray) -> np.ndarray:
-        spread = self.evaluator.body.dofs.rest_spread[list(self.part.dofs)]
-        return self.prior_px * ((values / spread) ** 2).sum(axis=1)
+    def _pixels(self, poses: np.ndarray) -> np.ndarray:
+        segments = self.part.segments
+        self.tally.evaluated += len(poses)
+        if self.windows is not None:
+            bounds = self.evaluator.bounds(poses, segments)
+            self.tally.outside_windows += int(leave_windows(bounds, self.windows).sum())
+        return self.evaluator.energies(self.weights, poses, segments).sum(axis=1)
+
+
+def rest_prior(body: Body, values: np.ndarray, dofs: Sequence[int] | None = None) -> np.ndarray:
+    """(N,) squared distances of values (N, n) from rest, in standard deviations of the DOFs."""
+    spread = body.dofs.rest_spread if dofs is None else body.dofs.rest_spread[list(dofs)]
+    return ((values / spread) ** 2).sum(axis=1)
 
 
 def first_steps(evaluator: Evaluator, pose: np.ndarray, part: Part, tip_px: float) -> np.ndarray:
@@ -84,17 +112,24 @@ def metres_per_pixel(cameras: tuple[Camera, ...], point: np.ndarray) -> float:
 
 
 def part_windows(evaluator: Evaluator, pose: np.ndarray, part: Part, side: int) -> np.ndarray:
-    """(V, 4) windows x0, y0, x1, y1 about the middle of the part in ``pose`` (section 4.2).
+    """(V, 4) windows x0, y0, x1, y1 about the part's centre of mass in ``pose`` (section 4.2).
 
     ``side`` is the window's edge in px of a picture whose shorter side is 240 px; it grows with the
     resolution.
     """
     bounds = evaluator.bounds(pose[None], part.segments)[0]
-    centres = (bounds[:, :2] + bounds[:, 2:]) / 2
+    pictures = evaluator.silhouettes(pose, part.segments)
+    centres = np.array(
+        [
+            np.argwhere(picture).mean(axis=0)[::-1] if picture.any() else (box[:2] + box[2:]) / 2
+            for picture, box in zip(pictures, bounds, strict=True)
+        ]
+    )
     halves = np.array([side * min(camera.size) / 480 for camera in evaluator.cameras])[:, None]
     return np.concatenate([centres - halves, centres + halves], axis=1).round().astype(np.int64)
 
 
-def leaves_window(bounds: np.ndarray, windows: np.ndarray) -> bool:
-    """Whether bounds (V, 4) reach out of the windows (V, 4) in any view."""
-    return bool((bounds[:, :2] < windows[:, :2]).any() or (bounds[:, 2:] > windows[:, 2:]).any())
+def leave_windows(bounds: np.ndarray, windows: np.ndarray) -> np.ndarray:
+    """(N,) bool: whether bounds (N, V, 4) reach out of the windows (V, 4) in any view."""
+    out = (bounds[..., :2] < windows[:, :2]) | (bounds[..., 2:] > windows[:, 2:])
+    return out.any(axis=(1, 2))

@@ -128,13 +128,16 @@ def contour_distances(
 
 
 def _is_unexplained(limb: tuple[np.ndarray, ...], silhouettes: tuple[Silhouette, ...]) -> bool:
-    """Whether most of the limb's px are foreground in fewer than 60 % of the views showing it."""
+    """Whether most of the limb's px are foreground in fewer than 60 % of the views showing it.
+
+    A limb that no view shows is unexplained.
+    """
     explained = []
     for part, silhouette in zip(limb, silhouettes, strict=True):
         drawn = part & silhouette.observed
         if drawn.any():
             explained.append(silhouette.foreground[drawn].mean() >= _EXPLAINED_SHARE)
-    return bool(explained) and float(np.mean(explained)) < _EXPLAINED_SHARE
+    return not explained or float(np.mean(explained)) < _EXPLAINED_SHARE
 
 
 def _figure(reduction, values: np.ndarray) -> float:

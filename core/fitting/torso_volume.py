@@ -42,17 +42,18 @@ class TorsoVolume:
         radii = np.array([_SHARE * (high - low) / 2 for low, high in boxes]).reshape(-1, 3)
         return cls(body, body.segment_joints[torso], centres, radii)
 
-    def holds_limb(self, transforms: np.ndarray, part: Part) -> np.ndarray:
-        """(N,) bool: whether a joint beyond the part's first, or a bone's end, lies inside.
+    def holds_part(self, transforms: np.ndarray, part: Part) -> np.ndarray:
+        """(N,) bool: whether a bone of the part, beyond its first joint, reaches inside.
 
-        ``transforms`` (N, J, 3, 4) are world_from_joint of the candidates.
+        Asked of the bones' joints, middles and ends; ``transforms`` (N, J, 3, 4) are
+        world_from_joint of the candidates.
         """
-        joints = np.unique(self.body.segment_joints[list(part.segments)])
-        carried = transforms[:, joints]
-        tails = (
-            np.einsum("njab,jb->nja", carried[..., :3], self.body.tails[joints]) + carried[..., 3]
-        )
-        points = np.concatenate([carried[:, 1:, :, 3], tails], axis=1)
+        chain = np.unique(self.body.segment_joints[list(part.segments)])
+        carried = transforms[:, chain]
+        tails = np.einsum("njab,jb->nja", carried[..., :3], self.body.tails[chain])
+        tails += carried[..., 3]
+        joints = carried[:, 1:, :, 3]
+        points = np.concatenate([joints, (joints + tails[:, 1:]) / 2, tails], axis=1)
         torso = transforms[:, self.joints]
         local = np.einsum(
             "nkab,npka->npkb", torso[..., :3], points[:, :, None] - torso[:, None, :, :, 3]

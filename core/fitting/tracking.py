@@ -8,6 +8,7 @@ import numpy as np
 
 from ..silhouettes.silhouette import Silhouette
 from .hierarchical import HierarchicalTracker
+from .part_search import Tally
 from .scores import FrameScores, frame_scores
 
 _DAMPING = 0.7
@@ -22,16 +23,14 @@ class FrameFit:
         frame: its number.
         pose: (D,).
         scores: how well the pose explains the silhouettes.
-        evaluations: candidates evaluated.
-        windows_left: how often a part was left outside its window.
+        tally: what the search took.
         seconds: time the fit took, without reading the footage.
     """
 
     frame: int
     pose: np.ndarray
     scores: FrameScores
-    evaluations: int
-    windows_left: int
+    tally: Tally
     seconds: float
 
 
@@ -49,4 +48,4 @@ def track(
         last = fit.pose
         scores = frame_scores(tracker.evaluator, fit.pose, silhouettes)
         seconds = time.perf_counter() - start
-        yield FrameFit(frame, fit.pose, scores, fit.evaluations, fit.windows_left, seconds)
+        yield FrameFit(frame, fit.pose, scores, fit.tally, seconds)

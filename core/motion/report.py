@@ -27,8 +27,8 @@ def fit_quality(motion: Motion, fits: Sequence[FrameFit]) -> dict:
         "contour_px": _median([fit.scores.contour_px for fit in ordered]),
         "lost_frames": motion.frames[motion.lost].tolist(),
         "seconds_per_frame": [fit.seconds for fit in ordered],
-        "evaluations_per_frame": [fit.evaluations for fit in ordered],
-        "windows_left_per_frame": [fit.windows_left for fit in ordered],
+        "evaluations_per_frame": [fit.tally.evaluated for fit in ordered],
+        "outside_windows_per_frame": [fit.tally.outside_windows for fit in ordered],
     }
 
 

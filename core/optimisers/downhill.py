@@ -11,6 +11,22 @@ import numpy as np
 from scipy.optimize import minimize
 
 from .line_energies import BatchEnergy, LineEnergies
+from .point_energies import PointEnergies
+
+
+@dataclass(frozen=True)
+class Effort:
+    """How far a downhill search goes.
+
+    Attributes:
+        sweeps: most passes over the direction set.
+        tolerance: a pass that lowers the energy by less than this share ends the search.
+        whole_lines: whether lines are evaluated in batches, or point by point.
+    """
+
+    sweeps: int = 3
+    tolerance: float = 2e-3
+    whole_lines: bool = True
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,16 +36,14 @@ class Minimum:
     Attributes:
         point: (n,) the best point evaluated.
         energy: its energy.
-        evaluations: how many points were evaluated.
     """
 
     point: np.ndarray
     energy: float
-    evaluations: int
 
 
 def downhill(
-    energies: BatchEnergy, start: np.ndarray, steps: np.ndarray, sweeps: int, tolerance: float
+    energies: BatchEnergy, start: np.ndarray, steps: np.ndarray, effort: Effort
 ) -> Minimum:
     """The best point that Powell's method finds from ``start``.
 
@@ -37,19 +51,12 @@ def downhill(
         energies: (N, n) points to (N,) energies.
         start: (n,) first point.
         steps: (n,) size of the first step in each direction, > 0.
-        sweeps: most passes over the direction set.
-        tolerance: a pass that lowers the energy by less than this share ends the search.
+        effort: how far to go.
     """
     start = np.asarray(start, float)
-    line_energies = LineEnergies(
-        lambda units: energies(start + units * steps), np.zeros(len(start))
-    )
-    minimize(
-        line_energies,
-        np.zeros(len(start)),
-        method="Powell",
-        options={"maxiter": sweeps, "ftol": tolerance, "xtol": 1e-3},
-    )
-    return Minimum(
-        start + line_energies.best * steps, line_energies.best_energy, line_energies.evaluations
-    )
+    origin = np.zeros(len(start))
+    kind = LineEnergies if effort.whole_lines else PointEnergies
+    function = kind(lambda units: energies(start + units * steps), origin)
+    options = {"maxiter": effort.sweeps, "ftol": effort.tolerance, "xtol": 1e-3}
+    minimize(function, origin, method="Powell", options=options)
+    return Minimum(start + function.best * steps, function.best_energy)

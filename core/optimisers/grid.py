@@ -19,4 +19,4 @@ def lowest(energies: BatchEnergy, points: np.ndarray) -> Minimum:
     """The point of lowest energy among ``points`` (N, n); the first of equals."""
     values = energies(points)
     best = int(np.argmin(values))
-    return Minimum(points[best].copy(), float(values[best]), len(points))
+    return Minimum(points[best].copy(), float(values[best]))

@@ -31,14 +31,12 @@ class LineEnergies:
     Attributes:
         best: (n,) the point of lowest energy among all that were truly evaluated.
         best_energy: its energy.
-        evaluations: how many points were evaluated.
     """
 
     def __init__(self, energies: BatchEnergy, start: np.ndarray):
         self._energies = energies
         self.best = np.array(start, float)
         self.best_energy = np.inf
-        self.evaluations = 0
         self._open(self.best, np.zeros(1), self.best * 0.0)
 
     def __call__(self, point: np.ndarray) -> float:
@@ -69,7 +67,6 @@ class LineEnergies:
 
     def _evaluated(self, points: np.ndarray) -> np.ndarray:
         values = np.round(self._energies(points), _DECIMALS)
-        self.evaluations += len(points)
         lowest = int(np.argmin(values))
         if values[lowest] < self.best_energy:
             self.best, self.best_energy = points[lowest].copy(), float(values[lowest])

@@ -81,3 +81,11 @@ def test_a_view_that_saw_nothing_tells_nothing_of_contours():
     scores = frame_scores(evaluator(body, cameras), body.rest_pose, (black, seen[1]))
     assert not scores.limb_residual.any()
     assert scores.iou.tolist() == [0, 1]
+
+
+def test_a_body_that_no_view_shows_is_lost():
+    body, cameras = small_body("sixteen_segment"), small_studio(2)
+    away = dof_values(body, root_z=-50.0)
+    scores = frame_scores(evaluator(body, cameras), away, filmed(body, cameras, body.rest_pose))
+    assert scores.lost
+    assert not scores.iou.any()

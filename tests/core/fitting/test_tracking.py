@@ -2,6 +2,7 @@ from types import SimpleNamespace
 
 import numpy as np
 from silhouette_mocap.core.fitting.hierarchical import FAITHFUL, HierarchicalTracker, PoseFit
+from silhouette_mocap.core.fitting.part_search import Tally
 from silhouette_mocap.core.fitting.tracking import track
 from synthetic import dof_values, evaluator, filmed, point_errors, small_body, small_studio
 
@@ -36,7 +37,7 @@ def test_each_frame_starts_from_the_last_pose_and_a_damped_prediction():
 
         def fit(self, silhouettes, last, predicted):
             starts.append((last[0], predicted[0]))
-            return PoseFit(last + np.eye(len(last))[0], 0.0, 1, 0)
+            return PoseFit(last + np.eye(len(last))[0], 0, Tally())
 
     frames = [(k, filmed(body, cameras, body.rest_pose)) for k in range(3)]
     list(track(Moving(), body.rest_pose, frames))
@@ -53,7 +54,7 @@ def test_frames_are_read_one_at_a_time():
             yield number, filmed(body, cameras, body.rest_pose)
 
     still = SimpleNamespace(
-        evaluator=evaluator(body, cameras), fit=lambda s, last, p: PoseFit(last, 0.0, 1, 0)
+        evaluator=evaluator(body, cameras), fit=lambda s, last, p: PoseFit(last, 0, Tally())
     )
     fits = track(still, body.rest_pose, frames())
     next(fits)
