@@ -3,7 +3,7 @@
 import os
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +18,7 @@ from .errors import MocapError
 from .fitting.hierarchical import SETTINGS, HierarchicalTracker
 from .fitting.tracking import FrameFit, track
 from .initialisation.first_pose import FirstFit, PoseRequest, initialised
+from .initialisation.plausibility import check_first_fit
 from .motion.overlay import OverlayVideo, Tile, overlay_picture
 from .progress import Progress
 from .rendering.native import NativeEvaluator
@@ -137,13 +138,14 @@ def _first_fit(take: Take, views: Views, start: Sequence[int], request: FitReque
         height = height or rest_height(body)
     else:
         body = template(body)
-    return initialised(
+    first = initialised(
         body,
         views.cameras,
         tuple(views.silhouettes(frame) for frame in start),
         PoseRequest(take.initial_pose.kind, height, take.floor),
         EVALUATORS[request.evaluator],
     )
+    return replace(first, notes=(*first.notes, *check_first_fit(first, views.cameras)))
 
 
 def _tracked(

@@ -62,6 +62,9 @@ def standing_height(
     """Height in metres of the body above the floor (z = ``floor``), the median over the views.
 
     A view counts if the silhouette's top lies inside its picture.
+
+    Raises:
+        MocapError: no view counts, or the body would end below the floor.
     """
     heights = []
     for camera, silhouette in zip(cameras, silhouettes, strict=True):
@@ -77,7 +80,13 @@ def standing_height(
             "no view shows the performer's head in the initial pose",
             "set height_m under [performer]",
         )
-    return round(float(np.median(heights)), 6)
+    height = round(float(np.median(heights)), 6)
+    if height <= 0:
+        raise MocapError(
+            f"the performer's head would be {-height:.2f} m below the floor",
+            "check floor under [world], and up under [cameras]",
+        )
+    return height
 
 
 def row_span(silhouette: Silhouette) -> tuple[int, int] | None:

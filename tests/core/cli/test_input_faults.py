@@ -3,6 +3,9 @@
 import shutil
 
 import pytest
+from silhouette_mocap.core.body.file import write_body
+from silhouette_mocap.core.body.scaling import scaled
+from silhouette_mocap.core.body.templates import template
 from silhouette_mocap.core.cli import main
 
 
@@ -55,6 +58,15 @@ def test_a_fit_too_short_for_offsets_says_so(quick_start, small_take, tmp_path, 
     assert main(["fit", str(small_take), "--out", str(tmp_path), "--frames", "0:1"]) == 0
     out = capsys.readouterr().out
     assert "too few frames to remove constant offsets" in out and "nan" not in out
+
+
+def test_a_first_fit_that_cannot_be_is_refused(quick_start, small_take, tmp_path, fault):
+    folder = shutil.copytree(small_take.parent, tmp_path / "session" / "small")
+    write_body(folder / "giant.npz", scaled(template("sixteen_segment"), 1000.0))
+    text = small_take.read_text("utf-8").replace("sixteen_segment", "giant.npz")
+    (folder / "take.toml").write_text(text, "utf-8")
+    line = fault("fit", folder / "take.toml", "--out", tmp_path / "out")
+    assert "m tall, not 0.5 to 2.6 m" in line and "units" in line
 
 
 def test_a_damaged_truth_is_told(small_take, tmp_path, fault):
