@@ -3,6 +3,7 @@
 import argparse
 from pathlib import Path
 
+from ..errors import MocapError
 from ..motion.export_request import FORMATS, Exporter
 from ..take.exporting import check_formats, export
 from .arguments import add_take, format_list, taken
@@ -29,6 +30,10 @@ def run(arguments: argparse.Namespace, exporter: Exporter | None) -> int:
     """Writes the files."""
     take = taken(arguments)
     formats = take.exports if arguments.export is None else arguments.export
+    if not formats:
+        raise MocapError(
+            "there is nothing to export, as the take names no formats", "name some with --export"
+        )
     check_formats(formats, exporter)
     for path in export(take, arguments.out, formats, exporter):
         say(f"wrote {path}")

@@ -1,17 +1,18 @@
 """The result of a fit in further formats."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from ..body.file import read_body
 from ..errors import MocapError
 from ..motion.export_request import Exporter, ExportRequest
 from ..motion.formats.trc import write_trc
-from ..motion.motion import read_motion
+from ..motion.motion import Motion, read_motion
 from .results import BODY, MOTION
 from .shown_footage import shown_footage
 from .take import Take
-from .views import open_views
+from .views import View, camera_names, open_views
 
 
 def check_formats(formats: Sequence[str], exporter: Exporter | None) -> None:
@@ -45,19 +46,22 @@ def export(
         path = folder / f"{take.name}.trc"
         write_trc(path, motion)
         return (path,)
-    views = open_views(take)
-    names = set(motion.camera_names)
-    shown = [view for view in views.views if view.undistortion.camera.name in names]
-    footage = {}
-    if "blend" in formats:
-        footage = shown_footage(shown, int(motion.frames[-1]), float(take.fps), folder)
+    # only a .blend shows cameras and footage, which may be gone by now
+    views = _tracked_views(take, motion) if "blend" in formats else ()
     request = ExportRequest(
         body=read_body(folder / BODY),
         motion=motion,
-        cameras=tuple(view.undistortion.camera for view in shown),
+        cameras=tuple(view.undistortion.camera for view in views),
         name=take.name,
         formats=tuple(formats),
         folder=folder,
-        footage=footage,
+        footage=shown_footage(views, int(motion.frames[-1]), float(take.fps), folder),
     )
     return exporter(request)
+
+
+def _tracked_views(take: Take, motion: Motion) -> tuple[View, ...]:
+    """The cameras and frames that were tracked with."""
+    tracked = replace(take, frames=(int(motion.frames[0]), int(motion.frames[-1])))
+    without = [name for name in camera_names(take) if name not in motion.camera_names]
+    return open_views(tracked, without).views

@@ -108,9 +108,7 @@ def open_views(
         MocapError: calibration or footage that is missing or does not fit, an unknown camera, or
             fewer than two cameras.
     """
-    settings = CalibrationSettings(take.cameras.format, take.cameras.units, take.cameras.up)
-    names = read_camera_names(take.cameras.calibration, settings)
-    used = _used_names(take, names, without)
+    used = _used_names(take, camera_names(take), without)
     _check_patterns(take)
     pattern = footage_pattern(take)
     span = None if take.frames is None else _narrowed(take, take.frames, frames)
@@ -119,12 +117,22 @@ def open_views(
         raise MocapError(
             f"{len(used)} camera left", f"use at least {_FEWEST_CAMERAS}", file=take.path
         )
-    settings = replace(settings, sizes={name: f.size for name, f in footage.items()})
+    sizes = {name: f.size for name, f in footage.items()}
+    settings = replace(_calibration_settings(take), sizes=sizes)
     calibration = read_calibration(take.cameras.calibration, settings)
     cameras = [camera for camera in calibration.cameras if camera.name in used]
     views = tuple(_view(take, camera, footage[camera.name]) for camera in cameras)
     notes = [*calibration.notes, *_opposite_notes(cameras), *_rate_notes(take, footage)]
     return Views(views, span or _narrowed(take, _common(footage), frames), tuple(notes))
+
+
+def camera_names(take: Take) -> tuple[str, ...]:
+    """The names of all calibrated cameras."""
+    return tuple(read_camera_names(take.cameras.calibration, _calibration_settings(take)))
+
+
+def _calibration_settings(take: Take) -> CalibrationSettings:
+    return CalibrationSettings(take.cameras.format, take.cameras.units, take.cameras.up)
 
 
 def footage_pattern(take: Take) -> str:
