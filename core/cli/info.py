@@ -47,7 +47,7 @@ def run(arguments: argparse.Namespace, exporter: Exporter | None) -> int:
             faults.append(error)
 
     with noted():
-        views = open_views(take)
+        views = _opened(take, faults)
         centre = None
         with noted():
             centre = _performer_place(take, views)
@@ -64,6 +64,23 @@ def run(arguments: argparse.Namespace, exporter: Exporter | None) -> int:
         complain(str(fault))
     say("something is missing" if faults else "all that fit needs is there")
     return _INPUT if faults else _DONE
+
+
+def _opened(take: Take, faults: list[MocapError]) -> Views:
+    """The views of the cameras without a fault; ``faults`` gets one for each of the others.
+
+    Raises:
+        MocapError: a fault of another kind.
+    """
+    without: list[str] = []
+    while True:
+        try:
+            return open_views(take, without)
+        except MocapError as error:
+            if error.camera is None or error.camera in without:
+                raise
+            faults.append(error)
+            without.append(error.camera)
 
 
 def _tell_take(take: Take) -> None:

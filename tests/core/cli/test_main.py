@@ -1,6 +1,7 @@
 """What the commands answer, and their exit codes."""
 
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -145,6 +146,28 @@ def test_info_names_everything_that_is_missing(small_take, tmp_path, capsys):
     assert main(["info", str(folder / "take.toml"), "--root", root]) == 2
     error = capsys.readouterr().err
     assert "cam_03" in error and "centaur" in error
+
+
+def test_info_names_every_camera_that_is_missing(small_take, tmp_path, capsys):
+    folder = tmp_path / "session" / "small"
+    shutil.copytree(small_take.parent, folder, ignore=shutil.ignore_patterns("cam_0?"))
+    assert main(["info", str(folder / "take.toml")]) == 2
+    error = capsys.readouterr().err
+    assert [error.count(f"camera cam_0{i}: ") for i in range(1, 6)] == [1] * 5
+
+
+def test_info_tells_of_the_other_cameras_too(small_take, tmp_path, capsys):
+    folder = shutil.copytree(small_take.parent, tmp_path / "session" / "small")
+    (folder / "masks" / "cam_02" / "000003.png").unlink()
+    assert main(["info", str(folder / "take.toml")]) == 2
+    shown = capsys.readouterr()
+    assert "cam_02, frame 3: missing" in shown.err and shown.err.count("\n") == 1
+    assert "footage     cam_03: frames 0 to 3" in shown.out
+
+
+def test_nothing_to_export_is_two(small_take, tmp_path, capsys):
+    assert main(["export", str(small_take), "--out", str(tmp_path)]) == 2
+    assert "names no formats; name some with --export" in capsys.readouterr().err
 
 
 def test_masks_are_written_with_a_quality_line_per_camera(small_take, tmp_path, capsys):
