@@ -43,7 +43,8 @@ def test_the_truth_is_found_within_a_pixel(fitted):
     result, _ = fitted
     # 4 m away with a focal length of 137 px, one pixel is 29 mm
     assert result.report["error_mm"]["absolute"]["mean"] < 29
-    assert result.report["iou"] > 0.95
+    # a third of a pixel all along 170 px of contour, round a silhouette of 800 px
+    assert result.report["iou"] > 0.93
     assert result.report["lost_frames"] == []
 
 
