@@ -3,6 +3,7 @@
 from dataclasses import dataclass, fields
 from fractions import Fraction
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -80,9 +81,9 @@ def read_motion(path: Path) -> Motion:
     """
     stored = read_archive(path, "motion.npz", "give the file that fit wrote")
     missing = [f.name for f in fields(Motion) if f.name not in stored]
-    if missing or not np.array_equal(stored.get("version"), VERSION):
+    if missing or not np.array_equal(stored.get("version", 0), VERSION):
         raise MocapError("is no motion file of this version", "run fit again", file=path)
-    values = {f.name: stored[f.name] for f in fields(Motion)}
+    values: dict[str, Any] = {f.name: stored[f.name] for f in fields(Motion)}
     for name in ("dof_names", "joint_names", "point_names", "camera_names"):
         values[name] = tuple(str(text) for text in values[name])
     values["fps"] = tuple(int(number) for number in values["fps"])
