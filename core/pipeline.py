@@ -79,7 +79,7 @@ def fit(take: Take, request: FitRequest, progress: Progress) -> FitResult:
     views = views.reduced(start)
     for note in views.notes:
         progress.note(note)
-    progress.note(f"looking for the performer in frame {start[0]}")
+    progress.begin("first pose", 1)
     first = _first_fit(take, views, start, request)
     for note in first.notes:
         progress.note(note)

@@ -17,7 +17,8 @@ def say(line: str = "") -> None:
 def complain(line: str) -> None:
     """Writes one line about what went wrong."""
     sys.stdout.flush()
-    sys.stderr.write("silhouette-mocap: " + " ".join(line.split()) + "\n")
+    clear = _CLEAR_LINE if sys.stderr.isatty() else ""
+    sys.stderr.write(f"{clear}silhouette-mocap: {' '.join(line.split())}\n")
     sys.stderr.flush()
 
 
@@ -40,9 +41,11 @@ class ProgressBar:
         self._write(f"{clear}note: {text}\n")
 
     def begin(self, task: str, total: int) -> None:
-        """A new bar."""
+        """A new bar, shown on a terminal before the first frame is done."""
         self.task, self.total, self.done, self.seconds = task, total, 0, 0.0
         self._mark = time.monotonic()
+        if self.on_terminal:
+            self._write(f"{_CLEAR_LINE}{task} [{'.' * _WIDTH}] 0/{total}")
 
     def advance(self, frame: int, seconds: float | None = None, iou: float | None = None) -> None:
         """One more frame; the mean time per frame counts what is around the work too."""

@@ -2,7 +2,7 @@
 
 import io
 
-from silhouette_mocap.core.cli.console import ProgressBar
+from silhouette_mocap.core.cli.console import ProgressBar, complain
 
 
 class Terminal(io.StringIO):
@@ -32,3 +32,12 @@ def test_on_a_terminal_one_line_grows_and_notes_stand_above_it():
     assert shown.count("\n") == 2 and shown.endswith("IoU 0.900\n")
     assert "note: look out\n" in shown and "############............" in shown
     assert "s/frame" in shown and "\r" in shown
+
+
+def test_an_empty_bar_stands_before_the_first_frame_and_faults_take_its_place(monkeypatch):
+    stream = Terminal()
+    ProgressBar(stream).begin("first pose", 1)
+    assert stream.getvalue().endswith("first pose [........................] 0/1")
+    monkeypatch.setattr("sys.stderr", stream)
+    complain("the take\nis gone")
+    assert stream.getvalue().endswith("\r\x1b[Ksilhouette-mocap: the take is gone\n")
