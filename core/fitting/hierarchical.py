@@ -14,6 +14,7 @@ part (4.2).
 """
 
 from collections.abc import Callable
+from copy import copy
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -108,6 +109,12 @@ class HierarchicalTracker:
         self.half_evaluator = make_evaluator(body, half)
         self.torso_volume = TorsoVolume.of(body)
         self.limits = {part.name: Limits.of(body, part.dofs) for part in body.parts}
+
+    def with_settings(self, settings: HierarchicalSettings) -> "HierarchicalTracker":
+        """A tracker of the same body and cameras that searches otherwise."""
+        other = copy(self)
+        other.settings = settings
+        return other
 
     def fit(
         self, silhouettes: tuple[Silhouette, ...], last: np.ndarray, predicted: np.ndarray

@@ -2,12 +2,11 @@
 
 The performer stands in a known pose (SPEC §5, `initial_pose`). Position comes from the rays through
 the silhouettes' centroids, the uniform scale from the silhouettes' extent or the given height, the
-heading from the XOR energy: the best of a ring of headings and the three a quarter turn away from
-it are fitted completely, since a silhouette looks much the same from in front and from behind, and
-the best fit wins.
+heading from the XOR energy: a ring of headings is fitted roughly, and the best four completely,
+since a silhouette looks much the same from in front and from behind, and the best fit wins.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -15,14 +14,14 @@ from ..body.body import Body, DofKind
 from ..body.kinematics import rest_height
 from ..body.scaling import scaled
 from ..cameras.camera import Camera
-from ..energy.weight_maps import xor_weight_maps
-from ..fitting.hierarchical import EvaluatorFactory, HierarchicalTracker
+from ..fitting.hierarchical import FAITHFUL, EvaluatorFactory, HierarchicalTracker, PoseFit
 from ..fitting.scores import frame_scores
 from ..silhouettes.silhouette import Silhouette
 from .pose_kinds import pose_of_kind
 from .standing import body_centre, row_span, standing_height
 
-_HEADINGS = 24
+_HEADINGS = 12
+_COMPLETE_FITS = 4
 _EXTENT_PASSES = 2
 
 
@@ -116,22 +115,22 @@ def _best_heading(
 ) -> tuple[np.ndarray, str]:
     """The best complete fit over four headings, and how clearly it won, in words."""
     body = tracker.body
-    ring = np.arange(_HEADINGS) * 2 * np.pi / _HEADINGS
-    poses = np.stack([_turned(pose, body, heading) for heading in ring])
-    weights = tracker.evaluator.prepared(xor_weight_maps(silhouettes))
-    rough = tracker.evaluator.energies(weights, poses).sum(axis=1)
-    nearest = ring[int(np.argmin(rough))]
-    starts = [_turned(pose, body, nearest + quarter * np.pi / 2) for quarter in range(4)]
-    fits = sorted(
-        (tracker.fit(silhouettes, start, start) for start in starts), key=lambda fit: fit.energy
-    )
+    quick = tracker.with_settings(replace(FAITHFUL, rounds=1))
+    ring = (_turned(pose, body, k * 2 * np.pi / _HEADINGS) for k in range(_HEADINGS))
+    rough = sorted((quick.fit(silhouettes, start, start) for start in ring), key=_energy)
+    starts = [fit.pose for fit in rough[:_COMPLETE_FITS]]
+    fits = sorted((tracker.fit(silhouettes, start, start) for start in starts), key=_energy)
     yaw = _yaw_dof(body)
     best = fits[0]
     others = [fit for fit in fits if np.cos(fit.pose[yaw] - best.pose[yaw]) < np.cos(np.pi / 4)]
     if not others:
-        return best.pose, "all four headings led to the same one"
+        return best.pose, "no other heading came near"
     margin = others[0].energy / max(best.energy, 1.0) - 1.0
     return best.pose, f"the next best heading is {margin:.0%} worse"
+
+
+def _energy(fit: PoseFit) -> int:
+    return fit.energy
 
 
 def _matched_extent(
