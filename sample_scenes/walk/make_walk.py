@@ -34,6 +34,9 @@ body = "performer"
 
 [world]
 floor = 0.0
+
+[export]
+formats = ["blend", "fbx", "bvh", "trc"]
 """
 TAKES = {
     "take.toml": ("walk", "calibration.toml", 'silhouettes = "masks/{camera}/{frame:06d}.png"'),
