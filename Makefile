@@ -47,8 +47,8 @@ lint: .venv/.installed
 	.venv/bin/pyright
 
 test-core: env
-	.venv/bin/python -m pytest -q -n 2 $(CORE_TESTS)
-	.venv-3.13/bin/python -m pytest -q -n 2 $(CORE_TESTS)
+	.venv/bin/python -m pytest -q -n 2 --dist worksteal $(CORE_TESTS)
+	.venv-3.13/bin/python -m pytest -q -n 2 --dist worksteal $(CORE_TESTS)
 
 test-addon: env
 	.venv/bin/python -m pytest -q -n 2 tests/addon

@@ -49,11 +49,12 @@ def test_a_given_height_is_kept():
 def test_the_kinds_put_the_arms_where_they_say(name):
     body = small_body(name)
     for kind, elbow_drop, wrist_drop in (("A", 0.707, 0.707), ("T", 0.0, 0.0), ("elbows", 0.17, 1)):
-        shoulder, elbow, wrist = points(body, pose_of_kind(body, kind)[None])[0, [2, 4, 6]]
+        found = points(body, pose_of_kind(body, kind)[None])[0]
+        shoulder, elbow, wrist = found[[2, 4, 6]]
         upper, fore = elbow - shoulder, wrist - elbow
         assert -upper[2] / np.linalg.norm(upper) == pytest.approx(elbow_drop, abs=0.03)
         assert -fore[2] / np.linalg.norm(fore) == pytest.approx(wrist_drop, abs=0.03)
-        mirrored = points(body, pose_of_kind(body, kind)[None])[0, 7] * [-1, 1, 1]
+        mirrored = found[7] * [-1, 1, 1]
         assert np.allclose(wrist, mirrored, atol=1e-3)
 
 
