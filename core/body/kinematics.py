@@ -98,9 +98,13 @@ def within_limits(body: Body, poses: np.ndarray) -> np.ndarray:
 
 def _edge_distances(cone: np.ndarray, swings: np.ndarray) -> np.ndarray:
     """(N, K) signed distances of swings (N, 2) to the lines of a cone's edges, inside positive."""
+    return np.einsum("nkc,kc->nk", swings[:, None] - cone, inward_normals(cone))
+
+
+def inward_normals(cone: np.ndarray) -> np.ndarray:
+    """(K, 2) unit normals of a cone's edges, pointing inside."""
     edges = np.roll(cone, -1, axis=0) - cone
-    inward = np.stack([-edges[:, 1], edges[:, 0]], -1) / np.linalg.norm(edges, axis=1)[:, None]
-    return np.einsum("nkc,kc->nk", swings[:, None] - cone, inward)
+    return np.stack([-edges[:, 1], edges[:, 0]], -1) / np.linalg.norm(edges, axis=1)[:, None]
 
 
 def clamped(body: Body, poses: np.ndarray) -> np.ndarray:

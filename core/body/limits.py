@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .body import Body
-from .kinematics import TOLERANCE, swing_rows
+from .kinematics import TOLERANCE, inward_normals, swing_rows
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,9 +35,7 @@ class Limits:
             rows = swing_rows(body, joint)
             if not set(rows) <= set(chosen):
                 continue
-            edges = np.roll(cone, -1, axis=0) - cone
-            inward = np.stack([-edges[:, 1], edges[:, 0]], axis=1)
-            inward /= np.linalg.norm(edges, axis=1)[:, None]
+            inward = inward_normals(cone)
             spread = np.zeros((len(cone), len(chosen)))
             spread[:, [chosen.index(row) for row in rows]] = inward
             normals.append(spread)
