@@ -14,6 +14,7 @@ from pathlib import Path
 import bpy
 
 from ..core.errors import MocapError
+from ..core.files import whole_file
 from ..core.motion.export_request import ExportRequest
 from ..core.motion.formats.trc import write_trc
 from .bridge.performance import Performance, add_performance
@@ -86,19 +87,16 @@ def _write(
 ) -> Path:
     """Writes one format under a temporary name and gives it its own when it is whole."""
     path = request.path(suffix).absolute()
-    partial = path.with_name(f".{path.stem}.partial.{suffix}")
+    if suffix == "trc":
+        write_trc(path, request.motion)
+        return path
     try:
-        if suffix == "trc":
-            write_trc(path, request.motion)
-            return path
-        with contextlib.redirect_stdout(io.StringIO()):  # read by programs, not Blender's to fill
+        # standard output is read by programs, not Blender's to fill
+        with whole_file(path) as partial, contextlib.redirect_stdout(io.StringIO()):
             _WRITERS[suffix](partial, scene, performance)
-        partial.replace(path)
-    except (OSError, RuntimeError) as error:
+    except RuntimeError as error:
         reason = str(error).strip().splitlines()[-1]
         raise MocapError(f"cannot be written ({reason})", "check the folder", file=path) from error
-    finally:
-        partial.unlink(missing_ok=True)
     return path
 
 

@@ -15,16 +15,17 @@ from .body.templates import template
 from .cameras.camera import Camera
 from .energy.evaluator import Evaluator
 from .errors import MocapError
+from .files import made_folder
 from .fitting.hierarchical import SETTINGS, HierarchicalTracker
 from .fitting.tracking import FrameFit, track
 from .initialisation.first_pose import FirstFit, PoseRequest, initialised
 from .initialisation.plausibility import check_first_fit
 from .motion.overlay import OverlayVideo, Tile, overlay_picture
-from .progress import Progress
+from .progress import FrameFigures, Progress
 from .rendering.native import NativeEvaluator
 from .rendering.reference import ReferenceEvaluator
 from .silhouettes.silhouette import Silhouette
-from .take.results import OVERLAY, FitResult, Outcome, made_folder, write_results
+from .take.results import OVERLAY, FitResult, Outcome, write_results
 from .take.take import Search, Take
 from .take.views import Views, open_views
 
@@ -105,7 +106,7 @@ def fit(take: Take, request: FitRequest, progress: Progress) -> FitResult:
             for found, seen in _tracked(tracker, first.pose, views, start[0]):
                 fits.append(found)
                 overlay.add(found.frame, _overlay(tracker.evaluator, views, found, seen))
-                progress.advance(found.frame, found.seconds, float(np.nanmean(found.scores.iou)))
+                progress.advance(found.frame, _figures(found, views))
             result = save()
         except BaseException:
             if fits:
@@ -164,6 +165,18 @@ def _tracked(
 
         for found in track(tracker, pose, read()):
             yield found, seen.pop(found.frame)
+
+
+def _figures(found: FrameFit, views: Views) -> FrameFigures:
+    names = [camera.name for camera in views.cameras]
+    scores = found.scores
+    return FrameFigures(
+        seconds=found.seconds,
+        evaluations=found.tally.evaluated,
+        iou=dict(zip(names, scores.iou.tolist(), strict=True)),
+        xor_px=dict(zip(names, scores.xor_px.tolist(), strict=True)),
+        lost=scores.lost,
+    )
 
 
 def _overlay(evaluator: Evaluator, views: Views, found: FrameFit, seen: Silhouettes) -> np.ndarray:

@@ -1,6 +1,34 @@
 """How long work tells its caller how far it is; the caller decides what to show."""
 
+from dataclasses import dataclass
 from typing import Protocol
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class FrameFigures:
+    """What is known of a frame that was just fitted.
+
+    Attributes:
+        seconds: time the fit took.
+        evaluations: poses that were rendered.
+        iou: intersection over union by camera; NaN where nothing was observed.
+        xor_px: px that differ by camera.
+        lost: whether the pose is not to be trusted.
+    """
+
+    seconds: float
+    evaluations: int
+    iou: dict[str, float]
+    xor_px: dict[str, int]
+    lost: bool
+
+    @property
+    def mean_iou(self) -> float:
+        """Over the cameras that observed something; NaN where none did."""
+        known = [value for value in self.iou.values() if not np.isnan(value)]
+        return float(np.mean(known)) if known else float("nan")
 
 
 class Progress(Protocol):
@@ -14,13 +42,12 @@ class Progress(Protocol):
         """``total`` frames of ``task`` are about to be worked on."""
         ...
 
-    def advance(self, frame: int, seconds: float | None = None, iou: float | None = None) -> None:
+    def advance(self, frame: int, figures: FrameFigures | None = None) -> None:
         """One frame is done.
 
         Args:
             frame: its number.
-            seconds: time it took; None where it is of no interest.
-            iou: mean intersection over union of its views; None where nothing was fitted.
+            figures: how it was fitted; None where nothing was.
         """
         ...
 
@@ -34,5 +61,5 @@ class Silence:
     def begin(self, task: str, total: int) -> None:
         """Drops the announcement."""
 
-    def advance(self, frame: int, seconds: float | None = None, iou: float | None = None) -> None:
+    def advance(self, frame: int, figures: FrameFigures | None = None) -> None:
         """Drops the frame."""

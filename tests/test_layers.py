@@ -9,9 +9,9 @@ import pytest
 ROOT = Path(__file__).resolve().parents[1]
 # a package of core imports only itself and earlier ones
 ORDER = (
-    "errors", "progress", "geometry", "cameras", "footage", "silhouettes", "body", "native",
-    "energy", "rendering", "optimisers", "particles", "fitting", "initialisation", "motion",
-    "take", "distributed", "pipeline", "cli",
+    "errors", "files", "progress", "geometry", "pages", "cameras", "footage", "silhouettes", "body",
+    "native", "energy", "rendering", "optimisers", "particles", "fitting", "initialisation",
+    "motion", "take", "distributed", "pipeline", "cli",
 )  # fmt: skip
 BLENDER = frozenset(("bpy", "bmesh", "mathutils", "gpu", "bl_ui", "bpy_extras", "addon_utils"))
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import MocapError
-from ..geometry.archive import read_archive
+from ..geometry.archive import read_archive, write_archive
 from .body import Body, Dofs, Part, Surface
 
 VERSION = 1
@@ -23,10 +23,7 @@ PART_LISTS = ("dofs", "grid", "segments")
 
 def write_body(path: Path, body: Body) -> None:
     """Writes ``body`` whole or not at all."""
-    partial = path.with_name(path.name + ".partial")
-    with partial.open("wb") as stream:
-        np.savez_compressed(stream, version=VERSION, **_packed(body))
-    partial.replace(path)
+    write_archive(path, version=VERSION, **_packed(body))
 
 
 def _packed(body: Body) -> dict[str, np.ndarray]:

@@ -4,6 +4,8 @@ import sys
 import time
 from typing import TextIO
 
+from ..progress import FrameFigures
+
 _WIDTH = 24
 _CLEAR_LINE = "\r\x1b[K"
 
@@ -47,15 +49,15 @@ class ProgressBar:
         if self.on_terminal:
             self._write(f"{_CLEAR_LINE}{task} [{'.' * _WIDTH}] 0/{total}")
 
-    def advance(self, frame: int, seconds: float | None = None, iou: float | None = None) -> None:
+    def advance(self, frame: int, figures: FrameFigures | None = None) -> None:
         """One more frame; the mean time per frame counts what is around the work too."""
         now = time.monotonic()
         self.seconds += now - self._mark
         self._mark = now
         self.done += 1
-        quality = "" if iou is None else f"  IoU {iou:.3f}"
+        quality = "" if figures is None else f"  IoU {figures.mean_iou:.3f}"
         if not self.on_terminal:
-            took = "" if seconds is None else f"  {seconds:.2f} s"
+            took = "" if figures is None else f"  {figures.seconds:.2f} s"
             self._write(f"{self.task} {self.done}/{self.total}  frame {frame}{took}{quality}\n")
             return
         filled = round(_WIDTH * self.done / max(self.total, 1))

@@ -11,6 +11,7 @@ from importlib.metadata import PackageNotFoundError, version
 from typing import NoReturn
 
 from ..errors import MocapError
+from ..files import unwritable
 from ..motion.export_request import Exporter
 from . import export, fit, info, masks, plate, score
 from .console import complain
@@ -51,7 +52,7 @@ def main(argv: Sequence[str], exporter: Exporter | None = None) -> int:
         return DONE
     except Exception as error:
         if isinstance(error, OSError) and error.errno in _DISK_FAULTS:
-            complain(f"{error.filename or 'the disk'}: {error.strerror}; free or change it")
+            complain(str(unwritable(error.filename or "the disk", error)))
             return INPUT
         complain(f"internal error ({error!r}); please send {_written_traceback()} to the makers")
         return INTERNAL

@@ -12,6 +12,7 @@ import cv2
 import numpy as np
 
 from ..errors import MocapError
+from ..files import made_folder, whole_file
 
 PICTURE_SUFFIXES = (
     ".png",
@@ -76,7 +77,7 @@ def _decoder_silenced() -> Iterator[None]:
 
 
 def write_picture(path: Path, picture: np.ndarray, flags: tuple[int, ...] = ()) -> None:
-    """Writes ``picture`` in the format of ``path``'s suffix; missing folders are made.
+    """Writes ``picture`` whole, in the format of its suffix; missing folders are made.
 
     Args:
         path: the file to write; an existing one is replaced.
@@ -92,11 +93,9 @@ def write_picture(path: Path, picture: np.ndarray, flags: tuple[int, ...] = ()) 
         coded, data = False, np.zeros(0, np.uint8)
     if not coded:
         raise MocapError("is no picture format that can be written", "use .png", file=path)
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        data.tofile(path)
-    except OSError as error:
-        raise MocapError(f"cannot be written ({error.strerror})", file=path) from error
+    made_folder(path.parent)
+    with whole_file(path) as partial:
+        partial.write_bytes(data.tobytes())
 
 
 def colour_picture(picture: np.ndarray) -> np.ndarray:

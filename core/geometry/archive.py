@@ -7,9 +7,20 @@ from zipfile import BadZipFile
 import numpy as np
 
 from ..errors import MocapError
+from ..files import whole_file
 
 # what numpy and zipfile raise on files that are cut short, changed or of another kind
 _DAMAGE = (OSError, ValueError, EOFError, TypeError, RuntimeError, BadZipFile, zlib.error)
+
+
+def write_archive(path: Path, **arrays) -> None:
+    """Writes arrays by name to the .npz file ``path``, whole or not at all; equal ones equally.
+
+    Raises:
+        MocapError: it cannot be written.
+    """
+    with whole_file(path) as partial:
+        np.savez_compressed(partial, **arrays)
 
 
 def read_archive(path: Path, kind: str, remedy: str) -> dict[str, np.ndarray]:

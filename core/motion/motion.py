@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import MocapError
-from ..geometry.archive import read_archive
+from ..geometry.archive import read_archive, write_archive
 
 VERSION = 1
 
@@ -67,10 +67,7 @@ class Motion:
 def write_motion(path: Path, motion: Motion) -> None:
     """Writes ``motion`` whole or not at all."""
     values = {f.name: np.asarray(getattr(motion, f.name)) for f in fields(Motion)}
-    partial = path.with_name(path.name + ".partial")
-    with partial.open("wb") as stream:
-        np.savez_compressed(stream, version=VERSION, **values)
-    partial.replace(path)
+    write_archive(path, version=VERSION, **values)
 
 
 def read_motion(path: Path) -> Motion:

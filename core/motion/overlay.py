@@ -12,8 +12,8 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from ..errors import MocapError
 from ..footage.pictures import read_picture, write_picture
+from ..footage.video_writing import write_video
 from ..silhouettes.silhouette import Silhouette
 
 BOTH, MODEL_ONLY, OBSERVED_ONLY = (60, 200, 60), (40, 40, 240), (255, 120, 30)
@@ -87,19 +87,8 @@ class OverlayVideo:
             MocapError: it cannot be written.
             ValueError: no picture was added.
         """
-        if not self._pictures:
-            raise ValueError("expected at least one picture")
         pictures = [self._pictures[frame] for frame in sorted(self._pictures)]
-        height, width = read_picture(pictures[0]).shape[:2]
-        partial = Path(self._folder.name) / self.path.name
-        code = cv2.VideoWriter.fourcc(*"mp4v")
-        video = cv2.VideoWriter(str(partial), code, self.fps, (width, height))
-        if not video.isOpened():
-            raise MocapError("cannot be written", "check the folder", file=self.path)
-        for file in pictures:
-            video.write(read_picture(file))
-        video.release()
-        partial.replace(self.path)
+        write_video(self.path, map(read_picture, pictures), self.fps)
 
 
 def coloured(tile: Tile) -> np.ndarray:

@@ -11,7 +11,7 @@ import cv2
 import numpy as np
 import scipy
 
-from ..errors import MocapError
+from ..files import whole_file
 from ..fitting.tracking import FrameFit
 from .motion import Motion
 
@@ -55,13 +55,8 @@ def write_report(path: Path, report: dict) -> None:
         MocapError: the file cannot be written.
     """
     text = json.dumps(_plain(report), indent=1, allow_nan=False) + "\n"
-    partial = path.with_name(path.name + ".partial")
-    try:
+    with whole_file(path) as partial:
         partial.write_text(text, "utf-8")
-        partial.replace(path)
-    except OSError as error:
-        problem = f"cannot be written ({error.strerror})"
-        raise MocapError(problem, "check the folder", file=path) from error
 
 
 def _plain(value):

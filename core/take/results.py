@@ -164,18 +164,3 @@ def _error(take: Take, motion: Motion, tell: Callable[[str], None]) -> dict | No
     except MocapError as error:
         tell(f"no error to the truth: {error}")
         return None
-
-
-def made_folder(path: Path) -> Path:
-    """``path``, made where it is missing.
-
-    Raises:
-        MocapError: it cannot be made.
-    """
-    try:
-        path.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise MocapError(
-            f"cannot be made ({error.strerror})", "give another folder", file=path
-        ) from error
-    return path

@@ -3,12 +3,12 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-import cv2
 import numpy as np
 
-from ..errors import MocapError
+from ..files import made_folder
 from ..footage.patterns import ends_in_frame, has_frame
 from ..footage.pictures import colour_picture
+from ..footage.video_writing import write_video
 from .views import View
 
 
@@ -44,18 +44,13 @@ def _can_be_shown(place: str) -> bool:
 
 
 def _write_video(view: View, last: int, fps: float, path: Path) -> None:
-    path.parent.mkdir(parents=True, exist_ok=True)
+    made_folder(path.parent)
     footage, camera = view.source.footage, view.undistortion.camera
-    partial = path.with_name(f".{path.name}.partial.mp4")
-    video = cv2.VideoWriter(str(partial), cv2.VideoWriter.fourcc(*"mp4v"), fps, camera.size)
-    if not video.isOpened():
-        raise MocapError("cannot be written", "check the folder", file=path, camera=camera.name)
     empty = np.zeros((*camera.size[::-1], 3), np.uint8)
-    try:
-        for frame in range(last + 1):
-            missing = frame < footage.frames[0]
-            picture = empty if missing else colour_picture(footage.picture(frame))
-            video.write(empty if missing else view.undistortion.undistorted(picture))
-    finally:
-        video.release()
-    partial.replace(path)
+
+    def shown(frame: int) -> np.ndarray:
+        if frame < footage.frames[0]:
+            return empty
+        return view.undistortion.undistorted(colour_picture(footage.picture(frame)))
+
+    write_video(path, (shown(frame) for frame in range(last + 1)), fps)

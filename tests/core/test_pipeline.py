@@ -29,7 +29,7 @@ class Notebook(Silence):
     def note(self, text):
         self.notes.append(text)
 
-    def advance(self, frame, seconds=None, iou=None):
+    def advance(self, frame, figures=None):
         self.frames.append(frame)
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from ...errors import MocapError
+from ...files import whole_file
 from ..motion import Motion
 
 _METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001}
@@ -51,9 +52,8 @@ def write_trc(path: Path, motion: Motion) -> None:
     for frame, values in zip(motion.frames, turned, strict=True):
         cells = ("" if np.isnan(value) else f"{value:.5f}" for value in values)
         lines.append("\t".join([str(int(frame)), f"{frame / rate:.6f}", *cells]))
-    partial = path.with_name(path.name + ".partial")
-    partial.write_text("\n".join(lines) + "\n", encoding="utf-8")
-    partial.replace(path)
+    with whole_file(path) as partial:
+        partial.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
 def read_trc(path: Path) -> Trajectories:

@@ -1,8 +1,10 @@
 """Progress on a terminal and elsewhere."""
 
 import io
+import math
 
 from silhouette_mocap.core.cli.console import ProgressBar, complain
+from silhouette_mocap.core.progress import FrameFigures
 
 
 class Terminal(io.StringIO):
@@ -14,8 +16,8 @@ def told(stream) -> str:
     bar = ProgressBar(stream)
     bar.begin("fit", 2)
     bar.note("look out")
-    bar.advance(10, 1.25, 0.8766)
-    bar.advance(11, 1.5, 0.9)
+    bar.advance(10, FrameFigures(1.25, 9, {"a": 0.8533, "b": 0.8999, "c": math.nan}, {}, False))
+    bar.advance(11, FrameFigures(1.5, 9, {"a": 0.9}, {}, False))
     return stream.getvalue()
 
 

@@ -47,7 +47,8 @@ def test_a_fault_of_the_input_is_one_line_and_two(monkeypatch, capsys):
 def test_a_full_disk_is_a_fault_of_the_input(monkeypatch, capsys):
     failing(monkeypatch, OSError(28, "No space left on device", "out/motion.npz"))
     assert main(["info", "take.toml"]) == 2
-    assert "out/motion.npz: No space left on device" in capsys.readouterr().err
+    line = capsys.readouterr().err
+    assert "out/motion.npz: cannot be written (No space left on device); free space" in line
 
 
 def test_an_internal_error_is_one_and_names_the_file_with_the_traceback(monkeypatch, capsys):

@@ -1,0 +1,54 @@
+"""Files that appear whole or not at all."""
+
+import errno
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from .errors import MocapError
+
+_REMEDIES = {
+    **dict.fromkeys((errno.ENOSPC, errno.EDQUOT, errno.EFBIG), "free space on that disk"),
+    **dict.fromkeys((errno.EACCES, errno.EPERM, errno.EROFS), "give a folder you may write to"),
+    errno.ENAMETOOLONG: "give a shorter path",
+}
+_LONGEST_STEM = 100
+
+
+@contextmanager
+def whole_file(path: Path) -> Iterator[Path]:
+    """A path beside ``path`` to write to, which takes the place of ``path`` at the end.
+
+    When something fails in between, ``path`` stays as it was and nothing is left beside it.
+
+    Raises:
+        MocapError: the system refuses to write there.
+    """
+    partial = path.with_name(f".{path.stem[:_LONGEST_STEM]}.partial{path.suffix}")
+    try:
+        yield partial
+        partial.replace(path)
+    except OSError as error:
+        raise unwritable(path, error) from error
+    finally:
+        with suppress(OSError):
+            partial.unlink(missing_ok=True)
+
+
+def made_folder(path: Path) -> Path:
+    """``path``, made where it is missing.
+
+    Raises:
+        MocapError: it cannot be made.
+    """
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise unwritable(path, error) from error
+    return path
+
+
+def unwritable(path: Path | str, error: OSError) -> MocapError:
+    """The fault that ``path`` cannot be written, and what helps against it."""
+    remedy = _REMEDIES.get(error.errno or 0, "check the folder")
+    return MocapError(f"cannot be written ({error.strerror or error})", remedy, file=path)
