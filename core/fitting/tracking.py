@@ -36,11 +36,19 @@ class FrameFit:
 
 def track(
     tracker: HierarchicalTracker,
-    first_pose: np.ndarray,
+    last: np.ndarray,
     frames: Iterable[tuple[int, tuple[Silhouette, ...]]],
+    before: np.ndarray | None = None,
 ) -> Iterator[FrameFit]:
-    """The fits of ``frames`` in their order, the first searched from ``first_pose`` (D,)."""
-    last = predicted = first_pose
+    """The fits of ``frames`` in their order.
+
+    Args:
+        tracker: fits each frame.
+        last: (D,) the pose that the first is searched from.
+        frames: number and silhouettes.
+        before: (D,) the pose one frame before ``last``; None where nothing moved.
+    """
+    predicted = last if before is None else last + _DAMPING * (last - before)
     for frame, silhouettes in frames:
         start = time.perf_counter()
         fit = tracker.fit(silhouettes, last, predicted)

@@ -49,6 +49,14 @@ class Footage(Protocol):
         """
         ...
 
+    def stamp(self, frame: int) -> tuple[int, int]:
+        """Size and time of change (ns) of the file that holds the picture of ``frame``.
+
+        Raises:
+            MocapError: the frame is missing.
+        """
+        ...
+
     def pictures(self, first: int, last: int) -> Iterator[tuple[int, np.ndarray]]:
         """Frame number and picture of the frames ``first`` to ``last``, inclusive, one by one."""
         ...

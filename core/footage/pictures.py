@@ -65,6 +65,22 @@ def read_picture(
     return picture
 
 
+def file_stamp(path: Path, camera: str, frame: int) -> tuple[int, int]:
+    """Size in bytes and time of the last change in ns, which tell a changed file.
+
+    Raises:
+        MocapError: the file is gone.
+    """
+    try:
+        found = path.stat()
+    except OSError as error:
+        problem = f"cannot be read ({error.strerror})"
+        raise MocapError(
+            problem, "check the file", file=path, camera=camera, frame=frame
+        ) from error
+    return found.st_size, found.st_mtime_ns
+
+
 @contextmanager
 def _decoder_silenced() -> Iterator[None]:
     """OpenCV would tell of damaged pictures on standard error, beside our own line."""

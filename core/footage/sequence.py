@@ -7,7 +7,7 @@ import numpy as np
 
 from ..errors import MocapError
 from .patterns import for_frame
-from .pictures import read_picture
+from .pictures import file_stamp, read_picture
 
 
 class PictureSequence:
@@ -68,6 +68,10 @@ class PictureSequence:
                 frame=frame,
             )
         return picture
+
+    def stamp(self, frame: int) -> tuple[int, int]:
+        """Size and time of change (ns) of the picture's file."""
+        return file_stamp(self._path(frame), self.camera, frame)
 
     def pictures(self, first: int, last: int) -> Iterator[tuple[int, np.ndarray]]:
         """Frame number and picture of the frames ``first`` to ``last``, inclusive, one by one."""

@@ -12,6 +12,7 @@ import cv2
 import numpy as np
 
 from ..errors import MocapError
+from .pictures import file_stamp
 
 
 class Video:
@@ -72,6 +73,10 @@ class Video:
         self._next += 1
         self._held = (frame, picture)
         return picture
+
+    def stamp(self, frame: int) -> tuple[int, int]:
+        """Size and time of change (ns) of the video."""
+        return file_stamp(self.path, self.camera, frame)
 
     def pictures(self, first: int, last: int) -> Iterator[tuple[int, np.ndarray]]:
         """Frame number and picture of the frames ``first`` to ``last``, inclusive, one by one."""

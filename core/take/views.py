@@ -85,11 +85,24 @@ class Views:
         with ThreadPoolExecutor(len(self.views)) as pool:
             return tuple(pool.map(lambda view: view.silhouette(frame), self.views))
 
+    def stamps(self, frame: int) -> np.ndarray:
+        """(V, 2) size and time of change of the files that ``frame`` is read from."""
+        return np.array([view.source.footage.stamp(frame) for view in self.views], np.int64)
+
     def reduced(self, frames: Sequence[int]) -> "Views":
         """The views at the resolution that fits the performer's size in ``frames``."""
+        return self.reduced_by(
+            [
+                fitting_reduction(tuple(view.source.read(f) for f in frames)).factor
+                for view in self.views
+            ]
+        )
+
+    def reduced_by(self, factors: Sequence[int]) -> "Views":
+        """The views with pictures reduced by one whole factor each."""
         views = [
-            replace(view, reduction=fitting_reduction(tuple(view.source.read(f) for f in frames)))
-            for view in self.views
+            replace(view, reduction=Reduction(factor))
+            for view, factor in zip(self.views, factors, strict=True)
         ]
         return replace(self, views=tuple(views))
 
