@@ -73,6 +73,7 @@ setup(
     package_data={
         NAME: ["blender_manifest.toml"],
         f"{NAME}.core.native": ["*.c", "*.h"],
+        f"{NAME}.core.pages": ["*.css", "*.js"],
     },
     cmdclass={"build_py": BuildPy, "bdist_wheel": BdistWheel},
     distclass=BinaryDistribution,

@@ -81,10 +81,11 @@ def point_confidence(limb_residual: np.ndarray) -> np.ndarray:
     two-dimensional normal error; a limb that no view shows has none.
     """
     spread = np.maximum(np.nan_to_num(limb_residual, nan=np.inf), 1e-4)
-    return (1.0 - np.exp(-(0.05**2) / (2.0 * spread**2)))[[_limb_of(n) for n in POINT_NAMES]]
+    return (1.0 - np.exp(-(0.05**2) / (2.0 * spread**2)))[[limb_of(n) for n in POINT_NAMES]]
 
 
-def _limb_of(point: str) -> int:
+def limb_of(point: str) -> int:
+    """Index in `LIMB_NAMES` of the limb that moves a point of `POINT_NAMES`."""
     side, _, joint = point.partition("_")
     if joint in ("elbow", "wrist"):
         return LIMB_NAMES.index(f"{side}_arm")

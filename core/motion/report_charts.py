@@ -1,0 +1,71 @@
+"""The charts of a fit's report: how every frame fits, camera by camera and limb by limb."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..fitting.scores import LIMB_NAMES, limb_of
+from ..pages.chart import Chart, Scale, Series, chart_figure
+from ..pages.markup import Html, joined
+from .motion import Motion
+from .worst_frames import mean_iou
+
+# other than the first cameras' colours, lest a limb be taken for a camera
+_LIMB_STYLES = (6, 4, 5, 3, 2)
+
+
+def motion_charts(motion: Motion, seconds: Sequence[float]) -> Html:
+    """All charts over the motion's frames.
+
+    Args:
+        motion: the motion.
+        seconds: (T,) time each frame took.
+    """
+    frames, lost = motion.frames, motion.lost
+    likely = "probability of an error below 50 mm, lowest point of each limb"
+    time = [Series("fit", np.array(seconds, float))]
+    charts = (
+        Chart("Agreement", "IoU, 1 is perfect", frames, _iou(motion), lost, Scale(None, 1.0, 3)),
+        Chart("Differing pixels", "XOR px", frames, _xor(motion), lost, Scale(0.0, None, 0)),
+        Chart("Confidence", likely, frames, _confidence(motion), lost, Scale(0.0, 1.0)),
+        Chart(
+            "Limb residual", "mean contour distance, px", frames, _residual(motion), lost,
+            Scale(0.0),
+        ),
+        Chart("Time", "s per frame", frames, time, lost, Scale(0.0)),
+    )  # fmt: skip
+    return joined(map(chart_figure, charts))
+
+
+def _iou(motion: Motion) -> list[Series]:
+    mean = Series("mean of cameras", mean_iou(motion))
+    return [*_by_camera(motion, motion.iou), mean]
+
+
+def _xor(motion: Motion) -> list[Series]:
+    return _by_camera(motion, motion.xor_px.astype(float))
+
+
+def _by_camera(motion: Motion, values: np.ndarray) -> list[Series]:
+    columns = zip(motion.camera_names, values.T, strict=True)
+    return [Series(name, column, style) for style, (name, column) in enumerate(columns)]
+
+
+def _residual(motion: Motion) -> list[Series]:
+    return _by_limb(motion.limb_residual)
+
+
+def _confidence(motion: Motion) -> list[Series]:
+    limbs = np.array([limb_of(point) for point in motion.point_names])
+    lowest = [motion.confidence[:, limbs == k].min(axis=1) for k in range(len(LIMB_NAMES))]
+    return _by_limb(np.column_stack(lowest))
+
+
+def _by_limb(values: np.ndarray) -> list[Series]:
+    columns = zip(LIMB_NAMES, values.T, _LIMB_STYLES, strict=True)
+    return [Series(spoken(name), column, style) for name, column, style in columns]
+
+
+def spoken(name: str) -> str:
+    """``left_arm`` as people write it."""
+    return name.replace("_", " ")
