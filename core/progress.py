@@ -39,14 +39,14 @@ class Progress(Protocol):
         ...
 
     def begin(self, task: str, total: int) -> None:
-        """``total`` frames of ``task`` are about to be worked on."""
+        """``total`` frames, or other steps, of ``task`` are about to be worked on."""
         ...
 
-    def advance(self, frame: int, figures: FrameFigures | None = None) -> None:
+    def advance(self, frame: int | None, figures: FrameFigures | None = None) -> None:
         """One frame is done.
 
         Args:
-            frame: its number.
+            frame: its number; None where the work does not go frame by frame.
             figures: how it was fitted; None where nothing was.
         """
         ...
@@ -61,5 +61,5 @@ class Silence:
     def begin(self, task: str, total: int) -> None:
         """Drops the announcement."""
 
-    def advance(self, frame: int, figures: FrameFigures | None = None) -> None:
+    def advance(self, frame: int | None, figures: FrameFigures | None = None) -> None:
         """Drops the frame."""

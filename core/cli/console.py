@@ -1,74 +1,141 @@
-"""What the commands write: results to standard output, progress and notes to standard error."""
+"""What the commands tell: results on standard output, everything else on standard error.
 
+A console is the progress that long work is given, and more. All of it goes to the log; the kinds
+of consoles differ in what they show meanwhile.
+"""
+
+import logging
 import sys
 import time
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
 from typing import TextIO
 
+from ..errors import MocapError
 from ..progress import FrameFigures
 
-_WIDTH = 24
-_CLEAR_LINE = "\r\x1b[K"
+PROGRAM = "silhouette-mocap"
+CLEAR_LINE = "\r\x1b[K"
+SHOWN = f"{__name__}.shown"
+"""The logger of what is shown anyway."""
+_log, _shown = logging.getLogger(__name__), logging.getLogger(SHOWN)
 
 
 def say(line: str = "") -> None:
     """Writes a line of the result."""
-    sys.stdout.write(line + "\n")
+    _shown.info("%s", line)
+    encoding = sys.stdout.encoding or "utf-8"
+    # names of files may hold what a terminal has no letter for
+    shown = line.encode(encoding, "backslashreplace").decode(encoding)
+    sys.stdout.write(shown + "\n")
     sys.stdout.flush()
 
 
-def complain(line: str) -> None:
-    """Writes one line about what went wrong."""
-    sys.stdout.flush()
-    clear = _CLEAR_LINE if sys.stderr.isatty() else ""
-    sys.stderr.write(f"{clear}silhouette-mocap: {' '.join(line.split())}\n")
-    sys.stderr.flush()
+@dataclass
+class Task:
+    """How far a task is.
+
+    Attributes:
+        name: what is done.
+        total: frames, or other steps, it has.
+        started: when it began, by `time.monotonic`.
+        done: frames that are finished.
+    """
+
+    name: str
+    total: int
+    started: float
+    done: int = 0
+
+    @property
+    def elapsed(self) -> float:
+        """Seconds since it began."""
+        return time.monotonic() - self.started
+
+    @property
+    def remaining(self) -> float:
+        """Seconds that the rest takes at the mean pace so far; NaN before the first frame."""
+        return self.elapsed / self.done * (self.total - self.done) if self.done else float("nan")
 
 
-class ProgressBar:
-    """Progress as a bar on a terminal, as plain lines elsewhere.
+class Console:
+    """What a command does and finds, kept in the log.
 
     Args:
-        stream: where to write.
+        stream: where its kinds show it; standard error by default.
     """
 
     def __init__(self, stream: TextIO | None = None):
         self.stream = sys.stderr if stream is None else stream
-        self.on_terminal = self.stream.isatty()
-        self.task, self.total, self.done, self.seconds = "", 0, 0, 0.0
-        self._mark = time.monotonic()
+        self.task = Task("", 0, 0.0)
+
+    def start(self, command: str | None) -> None:
+        """The command that was asked for; None where the words name none."""
+        _log.info("command %s", command)
 
     def note(self, text: str) -> None:
-        """The text as a line of its own."""
-        clear = _CLEAR_LINE if self.on_terminal else ""
-        self._write(f"{clear}note: {text}\n")
+        """Something the user should know, one sentence."""
+        _shown.info("note: %s", text)
 
     def begin(self, task: str, total: int) -> None:
-        """A new bar, shown on a terminal before the first frame is done."""
-        self.task, self.total, self.done, self.seconds = task, total, 0, 0.0
-        self._mark = time.monotonic()
-        if self.on_terminal:
-            self._write(f"{_CLEAR_LINE}{task} [{'.' * _WIDTH}] 0/{total}")
+        """``total`` frames, or other steps, of ``task`` are about to be worked on."""
+        self.task = Task(task, total, time.monotonic())
+        _log.info("%s: %d to do", task, total)
 
-    def advance(self, frame: int, figures: FrameFigures | None = None) -> None:
-        """One more frame; the mean time per frame counts what is around the work too."""
-        now = time.monotonic()
-        self.seconds += now - self._mark
-        self._mark = now
-        self.done += 1
-        quality = "" if figures is None else f"  IoU {figures.mean_iou:.3f}"
-        if not self.on_terminal:
-            took = "" if figures is None else f"  {figures.seconds:.2f} s"
-            self._write(f"{self.task} {self.done}/{self.total}  frame {frame}{took}{quality}\n")
-            return
-        filled = round(_WIDTH * self.done / max(self.total, 1))
-        bar = "#" * filled + "." * (_WIDTH - filled)
-        pace = self.seconds / self.done
-        end = "\n" if self.done == self.total else ""
-        self._write(
-            f"{_CLEAR_LINE}{self.task} [{bar}] {self.done}/{self.total}"
-            f"  {pace:.2f} s/frame{quality}{end}"
-        )
+    def advance(self, frame: int | None, figures: FrameFigures | None = None) -> None:
+        """One frame is done."""
+        task = self.task
+        task.done += 1
+        if task.done == task.total:
+            _log.info("%s: %d done in %.3f s", task.name, task.total, task.elapsed)
 
-    def _write(self, text: str) -> None:
-        self.stream.write(text)
-        self.stream.flush()
+    def wrote(self, path: Path) -> None:
+        """A file of the result is there, whole."""
+        say(f"wrote {path}")
+
+    def lost(self, frames: Sequence[int]) -> None:
+        """The poses of ``frames``, at least one, are not to be trusted."""
+        _shown.warning("frames lost: %s", ", ".join(map(str, frames)))
+
+    def fault(self, error: MocapError, exit_code: int) -> None:
+        """What went wrong; the command ends with ``exit_code``."""
+        _shown.error("%s", error)
+
+    def verbose(self, record: logging.LogRecord) -> None:
+        """A line that ``--verbose`` asks for."""
+
+    def end(self, exit_code: int) -> None:
+        """The command is over."""
+        _log.info("exit code %d", exit_code)
+
+    def write(self, text: str) -> None:
+        """Shows ``text``; work goes on where nobody reads it any more or the disk is full."""
+        with suppress(OSError, ValueError):
+            self.stream.write(text)
+            self.stream.flush()
+
+
+class PlainConsole(Console):
+    """Shows what went wrong, line by line, and no progress."""
+
+    def lost(self, frames: Sequence[int]) -> None:
+        """The frames in one line."""
+        super().lost(frames)
+        self.line(f"{PROGRAM}: frames lost: {', '.join(map(str, frames))}")
+
+    def fault(self, error: MocapError, exit_code: int) -> None:
+        """The fault in one line."""
+        super().fault(error, exit_code)
+        self.line(f"{PROGRAM}: {' '.join(str(error).split())}")
+
+    def verbose(self, record: logging.LogRecord) -> None:
+        """The message after the seconds since the program began."""
+        self.line(f"{record.relativeCreated / 1000:9.3f} s  {record.getMessage()}")
+
+    def line(self, text: str) -> None:
+        """One line; a bar makes room for it."""
+        with suppress(OSError, ValueError):
+            sys.stdout.flush()
+        self.write(text + "\n")

@@ -7,10 +7,7 @@ from ..errors import MocapError
 from ..motion.export_request import FORMATS, Exporter
 from ..take.exporting import check_formats, export
 from .arguments import add_take, format_list, taken
-from .console import say
 
-NAME = "export"
-SUMMARY = "write the result of a fit in further formats"
 EXAMPLE = "silhouette-mocap export sample_scenes/walk/take.toml --out out/walk --export fbx,trc"
 
 
@@ -35,6 +32,10 @@ def run(arguments: argparse.Namespace, exporter: Exporter | None) -> int:
             "there is nothing to export, as the take names no formats", "name some with --export"
         )
     check_formats(formats, exporter)
-    for path in export(take, arguments.out, formats, exporter):
-        say(f"wrote {path}")
+    console = arguments.console
+    console.begin("export", 1)
+    files = export(take, arguments.out, formats, exporter)
+    console.advance(None)
+    for path in files:
+        console.wrote(path)
     return 0

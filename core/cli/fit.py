@@ -12,17 +12,13 @@ from ..take.results import FitResult
 from ..take.take import TRACKERS
 from .arguments import (
     add_cameras_and_frames,
-    add_progress,
     add_take,
     format_list,
-    shown_progress,
     taken,
 )
-from .console import complain, say
+from .console import say
 from .interrupts import shielded
 
-NAME = "fit"
-SUMMARY = "track the performer of a take and write the motion"
 EXAMPLE = "silhouette-mocap fit sample_scenes/walk/take.toml --out out/walk --export blend,bvh"
 _DONE, _LOST = 0, 3
 
@@ -46,7 +42,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help=f"some of {','.join(FORMATS)}, or none (default: what the take says)",
     )  # fmt: skip
     parser.add_argument("--strict", action="store_true", help="exit with 3 when frames were lost")
-    add_progress(parser)
 
 
 def run(arguments: argparse.Namespace, exporter: Exporter | None) -> int:
@@ -62,13 +57,17 @@ def run(arguments: argparse.Namespace, exporter: Exporter | None) -> int:
         without=tuple(arguments.without),
         shield=shielded,
     )
-    result = fit(take, request, shown_progress(arguments))
+    result = fit(take, request, arguments.console)
     files = result.files + export(take, arguments.out, formats, exporter)
-    _sum_up(result, files)
+    _sum_up(result)
+    for path in files:
+        arguments.console.wrote(path)
+    if result.report["lost_frames"]:
+        arguments.console.lost(result.report["lost_frames"])
     return _LOST if arguments.strict and result.report["lost_frames"] else _DONE
 
 
-def _sum_up(result: FitResult, files: tuple[Path, ...]) -> None:
+def _sum_up(result: FitResult) -> None:
     report = result.report
     frames = len(report["frames"])
     seconds, evaluations = (
@@ -85,7 +84,3 @@ def _sum_up(result: FitResult, files: tuple[Path, ...]) -> None:
         if math.isnan(mean):
             removed = "too few frames to remove constant offsets"
         say(f"error to the truth: {error['absolute']['mean']:.1f} mm, {removed}")
-    for path in files:
-        say(f"wrote {path}")
-    if report["lost_frames"]:
-        complain(f"frames lost: {', '.join(map(str, report['lost_frames']))}")

@@ -20,10 +20,8 @@ from ..take.exporting import check_formats
 from ..take.take import Take
 from ..take.views import View, Views, open_views
 from .arguments import add_take, taken
-from .console import complain, say
+from .console import say
 
-NAME = "info"
-SUMMARY = "check everything that fit will meet and say what is missing"
 EXAMPLE = "silhouette-mocap info sample_scenes/walk/take.toml"
 _DONE, _INPUT = 0, 2
 
@@ -61,7 +59,7 @@ def run(arguments: argparse.Namespace, exporter: Exporter | None) -> int:
         with noted():
             check()
     for fault in faults:
-        complain(str(fault))
+        arguments.console.fault(fault, _INPUT)
     say("something is missing" if faults else "all that fit needs is there")
     return _INPUT if faults else _DONE
 

@@ -2,27 +2,41 @@
 
 import argparse
 import errno
+import logging
 import os
 import sys
-import tempfile
-import traceback
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
-from typing import NoReturn
+from typing import TYPE_CHECKING, NoReturn
 
 from ..errors import MocapError
 from ..files import unwritable
-from ..motion.export_request import Exporter
-from . import export, fit, info, masks, plate, score
-from .console import complain
+from .arguments import add_common, asked_progress
+from .bar import BarConsole, LineConsole
+from .console import PROGRAM, Console, PlainConsole
+from .events import JsonConsole
+from .failures import internal_fault
 from .interrupts import interruptible
+from .logs import Log
+
+if TYPE_CHECKING:
+    from ..motion.export_request import Exporter
 
 DONE, INTERNAL, INPUT, LOST, INTERRUPTED = 0, 1, 2, 3, 130
-COMMANDS = (fit, masks, plate, export, score, info)
+COMMANDS = {
+    "fit": "track the performer of a take and write the motion",
+    "masks": "write the silhouettes of a take as masks and tell how sound they look",
+    "plate": "make a plate of the empty scene for each camera from its footage and further stills",
+    "export": "write the result of a fit in further formats",
+    "score": "measure the error of a motion against a reference, in mm",
+    "info": "check everything that fit will meet and say what is missing",
+}
 _DISK_FAULTS = (errno.ENOSPC, errno.EACCES, errno.EROFS, errno.EDQUOT, errno.EPERM)
+_log = logging.getLogger(__name__)
 
 
-def main(argv: Sequence[str], exporter: Exporter | None = None) -> int:
+def main(argv: Sequence[str], exporter: "Exporter | None" = None) -> int:
     """Runs one command.
 
     Args:
@@ -33,18 +47,35 @@ def main(argv: Sequence[str], exporter: Exporter | None = None) -> int:
         The exit code: 0 done, 1 internal error, 2 the input is at fault, 3 frames were lost and
         ``--strict`` was given, 130 interrupted.
     """
+    console = _console(asked_progress(argv))
+    with Log(console) as log:
+
+        def command() -> int:
+            with interruptible():
+                named = _named(argv)
+                console.start(named)
+                arguments = build_parser(named).parse_args(argv)
+                arguments.console = console
+                log.open(arguments, argv)
+                return arguments.run(arguments, exporter)
+
+        code = _exit_code(command, console)
+        console.end(code)
+    return code
+
+
+def _exit_code(command: Callable[[], int], console: Console) -> int:
+    """What ``command`` returns or its failure means; the console is told of the failure."""
     try:
-        arguments = build_parser().parse_args(argv)
+        return command()
     except SystemExit as stop:
+        # argparse has answered itself
         return stop.code if isinstance(stop.code, int) else DONE
-    try:
-        with interruptible():
-            return arguments.run(arguments, exporter)
     except MocapError as error:
-        complain(str(error))
+        console.fault(error, INPUT)
         return INPUT
     except KeyboardInterrupt:
-        complain("interrupted")
+        console.fault(MocapError("interrupted"), INTERRUPTED)
         return INTERRUPTED
     except BrokenPipeError:
         # whoever read the output has enough of it
@@ -52,30 +83,32 @@ def main(argv: Sequence[str], exporter: Exporter | None = None) -> int:
         return DONE
     except Exception as error:
         if isinstance(error, OSError) and error.errno in _DISK_FAULTS:
-            complain(str(unwritable(error.filename or "the disk", error)))
+            console.fault(unwritable(error.filename or "the disk", error), INPUT)
             return INPUT
-        complain(f"internal error ({error!r}); please send {_written_traceback()} to the makers")
+        _log.debug("internal error", exc_info=error)
+        console.fault(internal_fault(error), INTERNAL)
         return INTERNAL
 
 
-def build_parser() -> argparse.ArgumentParser:
-    """The tree of commands."""
+def build_parser(named: str | None = None) -> argparse.ArgumentParser:
+    """The tree of commands; only the words of the ``named`` one are loaded, which takes a while."""
     parser = _Parser(
-        prog="silhouette-mocap",
+        prog=PROGRAM,
         description="Markerless human motion capture from silhouettes.",
-        epilog="silhouette-mocap COMMAND --help tells more, with an example.",
+        epilog=f"{PROGRAM} COMMAND --help tells more, with an example.",
+        allow_abbrev=False,
     )
     parser.add_argument("--version", action="version", version=_version())
     commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
-    for command in COMMANDS:
-        sub = commands.add_parser(
-            command.NAME,
-            help=command.SUMMARY,
-            description=command.SUMMARY[0].upper() + command.SUMMARY[1:] + ".",
-            epilog=f"example: {command.EXAMPLE}",
-        )
-        command.add_arguments(sub)
-        sub.set_defaults(run=command.run)
+    for name, summary in COMMANDS.items():
+        sub = commands.add_parser(name, help=summary, allow_abbrev=False)
+        if name == named:
+            command = import_module(f".{name}", __package__)
+            sub.description = summary[0].upper() + summary[1:] + "."
+            sub.epilog = f"example: {command.EXAMPLE}"
+            command.add_arguments(sub)
+            add_common(sub)
+            sub.set_defaults(run=command.run)
     return parser
 
 
@@ -83,8 +116,21 @@ class _Parser(argparse.ArgumentParser):
     """Tells a wrong word in one line."""
 
     def error(self, message: str) -> NoReturn:
-        complain(f"{message}; see {self.prog} --help")
-        raise SystemExit(INPUT)
+        raise MocapError(message, f"see {self.prog} --help")
+
+
+def _console(progress: str | None) -> Console:
+    if progress == "json":
+        return JsonConsole()
+    if progress == "none":
+        return PlainConsole()
+    return BarConsole() if sys.stderr.isatty() else LineConsole()
+
+
+def _named(argv: Sequence[str]) -> str | None:
+    """The command among the words, where it is one."""
+    first = next((word for word in argv if not word.startswith("-")), None)
+    return first if first in COMMANDS else None
 
 
 def _version() -> str:
@@ -92,11 +138,3 @@ def _version() -> str:
         return version("silhouette-mocap")
     except PackageNotFoundError:
         return "not installed"
-
-
-def _written_traceback() -> str:
-    with tempfile.NamedTemporaryFile(
-        "w", encoding="utf-8", prefix="silhouette_mocap_error_", suffix=".txt", delete=False
-    ) as stream:
-        stream.write(traceback.format_exc())
-    return stream.name

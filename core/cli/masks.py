@@ -8,11 +8,9 @@ from ..motion.export_request import Exporter
 from ..silhouettes.quality import MaskQuality
 from ..take.extraction import write_take_masks
 from ..take.views import open_views
-from .arguments import add_cameras_and_frames, add_progress, add_take, shown_progress, taken
+from .arguments import add_cameras_and_frames, add_take, taken
 from .console import say
 
-NAME = "masks"
-SUMMARY = "write the silhouettes of a take as masks and tell how sound they look"
 EXAMPLE = "silhouette-mocap masks sample_scenes/balance/take_footage.toml --out out/balance/masks"
 
 
@@ -23,13 +21,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--out", type=Path, required=True, metavar="DIR", help="folder for CAMERA/000000.png …"
     )
     add_cameras_and_frames(parser)
-    add_progress(parser)
 
 
 def run(arguments: argparse.Namespace, exporter: Exporter | None) -> int:
     """Writes the masks and prints one line per camera."""
     views = open_views(taken(arguments), arguments.without, arguments.frames)
-    qualities = write_take_masks(views, arguments.out, shown_progress(arguments))
+    qualities = write_take_masks(views, arguments.out, arguments.console)
     say(
         f"{'camera':<16}{'frames':>8}{'empty':>8}{'coverage':>10}{'specks':>8}{'contrast':>10}"
         f"{'flicker':>9}"

@@ -9,10 +9,7 @@ from ..motion.export_request import Exporter
 from ..silhouettes.plate_recipe import PlateRecipe, read_plate_recipes
 from ..take.extraction import make_plate
 from .arguments import add_cameras_and_frames, add_take, taken
-from .console import say
 
-NAME = "plate"
-SUMMARY = "make a plate of the empty scene for each camera from its footage and further stills"
 EXAMPLE = (
     "silhouette-mocap plate sample_scenes/balance/take_footage.toml "
     "--recipes sample_scenes/balance/plates.toml"
@@ -39,7 +36,11 @@ def run(arguments: argparse.Namespace, exporter: Exporter | None) -> int:
         if name not in names:
             raise MocapError(f'there is no camera "{name}"', f"the cameras are {', '.join(names)}")
     used = [name for name in names if name not in arguments.without]
+    console = arguments.console
+    console.begin("plates", len(used))
     for name in used:
         path = make_plate(take, name, recipes.get(name, PlateRecipe()), arguments.frames)
-        say(f"wrote {path}, made from the footage itself: check that nobody is left in it")
+        console.advance(None)
+        console.wrote(path)
+    console.note("the plates are made from the footage itself: check that nobody is left in them")
     return 0

@@ -11,8 +11,6 @@ from ..motion.scoring import Score, Spread, aligned_in_time, aligned_rigidly, sc
 from .arguments import frame_range
 from .console import say
 
-NAME = "score"
-SUMMARY = "measure the error of a motion against a reference, in mm"
 EXAMPLE = "silhouette-mocap score out/walk/motion.npz sample_scenes/walk/truth.npz"
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from silhouette_mocap.core import cli
+from silhouette_mocap.core.cli import fit as fit_command
 from silhouette_mocap.core.cli import main
 from silhouette_mocap.core.cli.main import COMMANDS
 from silhouette_mocap.core.errors import MocapError
@@ -30,7 +30,7 @@ def test_no_command_is_one_line_and_two(capsys):
     assert error.count("\n") == 1 and "see silhouette-mocap --help" in error
 
 
-@pytest.mark.parametrize("command", [command.NAME for command in COMMANDS])
+@pytest.mark.parametrize("command", COMMANDS)
 def test_every_command_has_help_with_an_example(command, capsys):
     assert main([command, "--help"]) == 0
     assert f"example: silhouette-mocap {command}" in " ".join(capsys.readouterr().out.split())
@@ -78,7 +78,9 @@ def test_a_missing_take_is_two(tmp_path, capsys):
         ["--frames", "a:b"],
         ["--export", "fbx,doc"],
         ["--tracker", "magic"],
-        ["--progress", "json"],
+        ["--progress", "jason"],
+        ["--out"],
+        ["--frame", "0:1"],
     ],
 )
 def test_wrong_words_are_two(words, small_take, tmp_path, capsys):
@@ -114,7 +116,7 @@ def test_fit_then_score_then_export(quick_start, small_take, tmp_path, capsys):
 def test_lost_frames_are_told_and_are_three_only_if_strict(
     quick_start, small_take, tmp_path, monkeypatch, capsys
 ):
-    recorded = cli.fit.fit
+    recorded = fit_command.fit
 
     def losing(take, request, progress):
         result = recorded(take, request, progress)
@@ -204,8 +206,8 @@ from silhouette_mocap.core.initialisation.first_pose import FirstFit
 def started(body, cameras, silhouettes, request, make_evaluator):
     return FirstFit(body, body.rest_pose, np.ones(len(cameras)), ())
 
-def pausing(tracker, pose, frames, track=pipeline.track):
-    for found in track(tracker, pose, frames):
+def pausing(*search, track=pipeline.track):
+    for found in track(*search):
         yield found
         time.sleep(1)
 

@@ -1,0 +1,136 @@
+"""The log of a command: what ``--verbose`` tells and ``--log-file`` keeps.
+
+Modules of core log to loggers of their own names and know nothing of handlers. Without either
+option nothing of it is shown, Python's warnings and libraries' messages included.
+"""
+
+import argparse
+import logging
+import os
+import platform
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+
+from ..files import made_folder, unwritable
+from .console import SHOWN, Console
+
+PACKAGE = __name__.removesuffix(".core.cli.logs")
+_LOGGERS = (PACKAGE, "py.warnings")
+_LINE = "%(asctime)s %(levelname)-7s %(name)s: %(message)s"
+_log = logging.getLogger(__name__)
+
+
+class Log(ExitStack):
+    """Listens while a command runs; nothing is kept until ``open`` is told what to keep.
+
+    Args:
+        console: what shows the lines of ``--verbose``.
+    """
+
+    def __init__(self, console: Console):
+        super().__init__()
+        self.console = console
+        _quieten_decoders()
+        for name in _LOGGERS:
+            self.enter_context(_own_handlers(logging.getLogger(name)))
+        logging.captureWarnings(True)
+        self.callback(logging.captureWarnings, False)
+
+    def open(self, arguments: argparse.Namespace, argv: Sequence[str]) -> None:
+        """Does what ``--verbose`` and ``--log-file`` say.
+
+        Raises:
+            MocapError: the log file cannot be written.
+        """
+        if arguments.verbose:
+            self._listen(_Shown(self.console))
+        if arguments.log_file is not None:
+            self._listen(_opened(arguments.log_file))
+            self.enter_context(_native_messages_into(arguments.log_file))
+        _log.info("%s", " ".join(argv))
+        for fact in _facts() if arguments.log_file is not None else ():
+            _log.debug("%s", fact)
+
+    def _listen(self, handler: logging.Handler) -> None:
+        for name in _LOGGERS:
+            logging.getLogger(name).addHandler(handler)
+        self.callback(handler.close)
+
+
+class _Shown(logging.Handler):
+    """Passes messages on to the console, save those that it shows anyway."""
+
+    def __init__(self, console: Console):
+        super().__init__(logging.INFO)
+        self.console = console
+        self.addFilter(lambda record: record.name != SHOWN)
+
+    def emit(self, record: logging.LogRecord) -> None:
+        self.console.verbose(record)
+
+
+class _File(logging.FileHandler):
+    """A log file; the work goes on where the disk is full."""
+
+    def handleError(self, record: logging.LogRecord) -> None:
+        pass
+
+
+def _opened(path: Path) -> _File:
+    made_folder(path.parent)
+    try:
+        handler = _File(path, encoding="utf-8", errors="backslashreplace")
+    except OSError as error:
+        raise unwritable(path, error) from error
+    handler.setFormatter(logging.Formatter(_LINE))
+    return handler
+
+
+@contextmanager
+def _own_handlers(logger: logging.Logger) -> Iterator[None]:
+    """Within, the logger tells nobody but the handlers that are added to it."""
+    before = logger.level, logger.propagate, logger.handlers[:]
+    logger.setLevel(logging.DEBUG)
+    logger.propagate = False
+    logger.handlers = [logging.NullHandler()]
+    try:
+        yield
+    finally:
+        logger.level, logger.propagate, logger.handlers = before
+        logger.setLevel(before[0])
+
+
+def _facts() -> Iterator[str]:
+    from ..motion.report import versions  # takes a while, and few ask for it
+
+    yield f"process {os.getpid()} in {os.getcwd()}"
+    yield f"{platform.platform()}, {os.cpu_count()} processors"
+    yield ", ".join(f"{name} {version}" for name, version in versions().items())
+
+
+def _quieten_decoders() -> None:
+    """Keeps OpenCV and FFmpeg from telling of damaged files beside our own lines."""
+    os.environ.setdefault("OPENCV_LOG_LEVEL", "SILENT")
+    # "quiet" of FFmpeg; read when the first video is opened
+    os.environ.setdefault("OPENCV_FFMPEG_LOGLEVEL", "-8")
+
+
+@contextmanager
+def _native_messages_into(path: Path) -> Iterator[None]:
+    """Within, what native code writes to standard error goes to that file; Python's stays."""
+    own = sys.stderr
+    if own is not sys.__stderr__ or own is None:
+        yield
+        return
+    own.flush()
+    target, kept = own.fileno(), os.dup(own.fileno())
+    shown = open(kept, "w", encoding=own.encoding, errors=own.errors, buffering=1)
+    with shown as sys.stderr, path.open("ab") as log:
+        os.dup2(log.fileno(), target)
+        try:
+            yield
+        finally:
+            os.dup2(kept, target)
+            sys.stderr = own
