@@ -20,12 +20,22 @@ from .fitting.hierarchical import SETTINGS, HierarchicalTracker
 from .fitting.tracking import FrameFit, track
 from .initialisation.first_pose import FirstFit, PoseRequest, initialised
 from .initialisation.plausibility import check_first_fit
-from .motion.overlay import OverlayVideo, Tile, overlay_picture
+from .motion.overlay import Tile, overlay_picture
 from .progress import FrameFigures, Progress
 from .rendering.native import NativeEvaluator
 from .rendering.reference import ReferenceEvaluator
+from .results.fingerprint import Inputs, fit_inputs
+from .results.journal import SET_ASIDE, UNFINISHED, Journal, Start, set_aside
+from .results.writing import (
+    MOTION,
+    FitResult,
+    Outcome,
+    finished_result,
+    resumed,
+    with_pictures,
+    write_results,
+)
 from .silhouettes.silhouette import Silhouette
-from .take.results import OVERLAY, FitResult, Outcome, write_results
 from .take.take import Search, Take
 from .take.views import Views, open_views
 
@@ -55,6 +65,7 @@ class FitRequest:
         evaluator: one of `EVALUATORS`.
         frames: first and last frame, inclusive, that narrow the take's; None leaves an end.
         without: names of cameras to leave out.
+        resume: whether to go on with an unfinished fit in ``out``.
         shield: entered while the finished frames are written, so that nothing interrupts it.
     """
 
@@ -63,19 +74,62 @@ class FitRequest:
     evaluator: str = "native"
     frames: tuple[int | None, int | None] = (None, None)
     without: tuple[str, ...] = ()
+    resume: bool = False
     shield: Callable[[], AbstractContextManager] = nullcontext
+
+    @property
+    def settings(self) -> dict[str, object]:
+        """What decides the result, beside the take."""
+        return {**asdict(self.search), "evaluator": self.evaluator, "without": list(self.without)}
 
 
 def fit(take: Take, request: FitRequest, progress: Progress) -> FitResult:
     """Tracks ``take`` and writes motion.npz, body.npz, report.json and overlay.mp4.
 
-    When it is interrupted or fails, the frames finished so far are written first.
+    Every finished frame is kept on disk at once: whatever ends the fit, ``request.resume`` goes on
+    after the last of them and comes to the same result, bit by bit. When it is interrupted or
+    fails, the frames finished so far are written as results, too.
 
     Raises:
-        MocapError: the take, its calibration or its footage is at fault.
+        MocapError: the take, its calibration or its footage is at fault, or the unfinished fit was
+            begun with other inputs.
     """
     views = open_views(take, request.without, request.frames)
     made_folder(request.out)
+    inputs = fit_inputs(take, views, request.settings)
+    journal = resumed(request.out, inputs, views) if request.resume else None
+    if journal is None and request.resume:
+        finished = finished_result(request.out, inputs, views)
+        if finished is not None:
+            progress.note(f"all frames in {request.out / MOTION} were finished before")
+            return finished
+    if journal is None:
+        journal = _begun(take, views, request, inputs, progress)
+    else:
+        progress.note(f"{len(journal)} frames were finished before")
+    views = views.reduced_by(journal.start.factors)
+    outcome = Outcome(take, views, journal, request.settings)
+
+    def save() -> FitResult:
+        with request.shield():
+            return write_results(outcome, request.out, progress)
+
+    try:
+        _track(outcome, request, progress)
+        result = save()
+    except BaseException:
+        if len(journal):
+            save()
+        raise
+    result = with_pictures(outcome, result, progress)
+    journal.remove()
+    return result
+
+
+def _begun(
+    take: Take, views: Views, request: FitRequest, inputs: Inputs, progress: Progress
+) -> Journal:
+    """A journal with the first pose and no frame; what lies in its place is set aside."""
     start = initial_frames(take, views.frames)
     views = views.reduced(start)
     for note in views.notes:
@@ -84,36 +138,47 @@ def fit(take: Take, request: FitRequest, progress: Progress) -> FitResult:
     first = _first_fit(take, views, start, request)
     for note in first.notes:
         progress.note(note)
-    make_evaluator = EVALUATORS[request.evaluator]
+    kept = set_aside(request.out)
+    if kept:
+        progress.note(
+            f"{kept} frames of an unfinished fit are set aside in {request.out / SET_ASIDE}; "
+            "--resume would have gone on with them"
+        )
+    factors = tuple(view.reduction.factor for view in views.views)
+    notes = (*views.notes, *first.notes)
+    return Journal.begun(
+        request.out / UNFINISHED, Start(inputs, factors, first.body, first.pose, notes)
+    )
+
+
+def _track(outcome: Outcome, request: FitRequest, progress: Progress) -> None:
+    """Tracks what is not in the journal yet: from the initial pose on, then what comes before."""
+    views, journal = outcome.views, outcome.journal
+    start = initial_frames(outcome.take, views.frames)[0]
     setting = SETTINGS[request.search.setting][request.search.fast_motion]
-    tracker = HierarchicalTracker(first.body, views.cameras, make_evaluator, setting)
-    fits: list[FrameFit] = []
+    make_evaluator = EVALUATORS[request.evaluator]
+    tracker = HierarchicalTracker(journal.start.body, views.cameras, make_evaluator, setting)
+    first, last = views.frames
+    finished = journal.poses()
+    progress.begin("fit", last - first + 1 - len(finished))
+    for frames in (range(start, last + 1), range(start - 1, first - 1, -1)):
+        past = [journal.start.pose, journal.start.pose, *finished[: len(frames)]]
+        left = frames[len(past) - 2 :]
+        finished = finished[len(frames) :]
+        seen: dict[int, Silhouettes] = {}
+        for found in track(tracker, past[-1], _read(views, left, seen), past[-2]):
+            picture = _overlay(tracker.evaluator, views, found, seen.pop(found.frame))
+            journal.add(found, views.stamps(found.frame), picture)
+            progress.advance(found.frame, _figures(found, views))
 
-    def save() -> FitResult:
-        settings = {
-            **asdict(request.search),
-            "evaluator": request.evaluator,
-            "without": list(request.without),
-        }
-        notes = (*views.notes, *first.notes)
-        with request.shield():
-            outcome = Outcome(take, views, first.body, fits, settings, notes)
-            return write_results(outcome, request.out, progress)
 
-    progress.begin("fit", views.frames[1] - views.frames[0] + 1)
-    with OverlayVideo(request.out / OVERLAY, float(take.fps)) as overlay:
-        try:
-            for found, seen in _tracked(tracker, first.pose, views, start[0]):
-                fits.append(found)
-                overlay.add(found.frame, _overlay(tracker.evaluator, views, found, seen))
-                progress.advance(found.frame, _figures(found, views))
-            result = save()
-        except BaseException:
-            if fits:
-                save()
-            raise
-        overlay.write()
-    return FitResult(result.motion, result.report, (*result.files, overlay.path))
+def _read(
+    views: Views, frames: Sequence[int], seen: dict[int, Silhouettes]
+) -> Iterator[tuple[int, Silhouettes]]:
+    """Numbers and silhouettes of ``frames``, which are put into ``seen`` too."""
+    for frame in frames:
+        seen[frame] = views.silhouettes(frame)
+        yield frame, seen[frame]
 
 
 def initial_frames(take: Take, frames: tuple[int, int]) -> tuple[int, ...]:
@@ -148,23 +213,6 @@ def _first_fit(take: Take, views: Views, start: Sequence[int], request: FitReque
         EVALUATORS[request.evaluator],
     )
     return replace(first, notes=(*first.notes, *check_first_fit(first, views.cameras)))
-
-
-def _tracked(
-    tracker: HierarchicalTracker, pose: np.ndarray, views: Views, start: int
-) -> Iterator[tuple[FrameFit, Silhouettes]]:
-    """Fits of ``start`` and what follows, then of what comes before it, backwards."""
-    first, last = views.frames
-    for frames in (range(start, last + 1), range(start - 1, first - 1, -1)):
-        seen: dict[int, Silhouettes] = {}
-
-        def read(frames=frames, seen=seen) -> Iterator[tuple[int, Silhouettes]]:
-            for frame in frames:
-                seen[frame] = views.silhouettes(frame)
-                yield frame, seen[frame]
-
-        for found in track(tracker, pose, read()):
-            yield found, seen.pop(found.frame)
 
 
 def _figures(found: FrameFit, views: Views) -> FrameFigures:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from ..errors import MocapError
 from ..motion.export_request import FORMATS, Exporter
-from ..take.exporting import check_formats, export
+from ..results.exporting import check_formats, export
 from .arguments import add_take, format_list, taken
 
 EXAMPLE = "silhouette-mocap export sample_scenes/walk/take.toml --out out/walk --export fbx,trc"

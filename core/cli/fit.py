@@ -7,8 +7,9 @@ from pathlib import Path
 
 from ..motion.export_request import FORMATS, Exporter
 from ..pipeline import EVALUATORS, FitRequest, fit
-from ..take.exporting import check_formats, export
-from ..take.results import FitResult
+from ..results.exporting import check_formats, export
+from ..results.folder import occupied
+from ..results.writing import FitResult
 from ..take.take import TRACKERS
 from .arguments import (
     add_cameras_and_frames,
@@ -41,6 +42,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--export", type=format_list, metavar="LIST",
         help=f"some of {','.join(FORMATS)}, or none (default: what the take says)",
     )  # fmt: skip
+    parser.add_argument(
+        "--resume", action="store_true",
+        help="go on after the last finished frame of a fit that was cut off",
+    )  # fmt: skip
     parser.add_argument("--strict", action="store_true", help="exit with 3 when frames were lost")
 
 
@@ -55,10 +60,12 @@ def run(arguments: argparse.Namespace, exporter: Exporter | None) -> int:
         evaluator=arguments.evaluator,
         frames=arguments.frames,
         without=tuple(arguments.without),
+        resume=arguments.resume,
         shield=shielded,
     )
-    result = fit(take, request, arguments.console)
-    files = result.files + export(take, arguments.out, formats, exporter)
+    with occupied(arguments.out):
+        result = fit(take, request, arguments.console)
+        files = result.files + export(take, arguments.out, formats, exporter)
     _sum_up(result)
     for path in files:
         arguments.console.wrote(path)

@@ -16,7 +16,7 @@ from ..initialisation.standing import body_centre
 from ..motion.export_request import Exporter
 from ..native.library import load
 from ..pipeline import initial_frames
-from ..take.exporting import check_formats
+from ..results.exporting import check_formats
 from ..take.take import Take
 from ..take.views import View, Views, open_views
 from .arguments import add_take, taken

@@ -4,16 +4,12 @@ Green is where both are, red where only the model is, blue where only the perfor
 """
 
 import math
-import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import cv2
 import numpy as np
 
-from ..footage.pictures import read_picture, write_picture
-from ..footage.video_writing import write_video
 from ..silhouettes.silhouette import Silhouette
 
 BOTH, MODEL_ONLY, OBSERVED_ONLY = (60, 200, 60), (40, 40, 240), (255, 120, 30)
@@ -51,44 +47,6 @@ def overlay_picture(tiles: Sequence[Tile], title: str) -> np.ndarray:
     strip = np.zeros((24, columns * _TILE_WIDTH, 3), np.uint8)
     cv2.putText(strip, title, (8, 17), **_LABEL, lineType=cv2.LINE_AA)
     return _padded(np.vstack([strip, *rows]))
-
-
-class OverlayVideo:
-    """Collects overlay pictures in any order of frames and writes them as one video.
-
-    Until then they lie compressed in a hidden folder beside it; leaving the context removes them.
-
-    Args:
-        path: the video to write.
-        fps: frames per second.
-    """
-
-    def __init__(self, path: Path, fps: float):
-        self.path, self.fps = path, fps
-        self._pictures: dict[int, Path] = {}
-
-    def __enter__(self) -> "OverlayVideo":
-        self._folder = tempfile.TemporaryDirectory(prefix=".overlay_", dir=self.path.parent)
-        return self
-
-    def __exit__(self, *error) -> None:
-        self._folder.cleanup()
-
-    def add(self, frame: int, picture: np.ndarray) -> None:
-        """Keeps the picture (H, W, 3) uint8 BGR of one frame; all are of one size."""
-        file = Path(self._folder.name) / f"{frame}.jpg"
-        write_picture(file, picture, (cv2.IMWRITE_JPEG_QUALITY, 95))
-        self._pictures[frame] = file
-
-    def write(self) -> None:
-        """Writes the video, whole or not at all.
-
-        Raises:
-            MocapError: it cannot be written.
-            ValueError: no picture was added.
-        """
-        pictures = [self._pictures[frame] for frame in sorted(self._pictures)]
-        write_video(self.path, map(read_picture, pictures), self.fps)
 
 
 def coloured(tile: Tile) -> np.ndarray:

@@ -15,8 +15,8 @@ from silhouette_mocap.core.errors import MocapError
 from silhouette_mocap.core.motion.motion import read_motion
 from silhouette_mocap.core.pipeline import FitRequest, fit, initial_frames
 from silhouette_mocap.core.progress import Silence
+from silhouette_mocap.core.results.exporting import check_formats, export
 from silhouette_mocap.core.take import InitialPose, read_take
-from silhouette_mocap.core.take.exporting import check_formats, export
 from silhouette_mocap.core.take.take import Search
 
 
@@ -91,7 +91,7 @@ def test_frames_before_the_initial_pose_are_tracked_backwards(quick_start, small
     take = replace(read_take(small_take), initial_pose=InitialPose((1, 1), "A"))
     progress = Notebook()
     result = fit(take, FitRequest(tmp_path, frames=(0, 2)), progress)
-    assert progress.frames == [1, 2, 0]
+    assert progress.frames[:3] == [1, 2, 0]
     np.testing.assert_array_equal(result.motion.frames, [0, 1, 2])
     assert result.report["error_mm"]["absolute"]["max"] < 100
 
@@ -101,8 +101,8 @@ def test_an_interrupted_fit_keeps_the_finished_frames(
 ):
     track = pipeline.track
 
-    def interrupted(tracker, pose, frames):
-        for number, found in enumerate(track(tracker, pose, frames)):
+    def interrupted(*search):
+        for number, found in enumerate(track(*search)):
             if number == 2:
                 raise KeyboardInterrupt
             yield found
@@ -112,7 +112,9 @@ def test_an_interrupted_fit_keeps_the_finished_frames(
     with pytest.raises(KeyboardInterrupt):
         fit(read_take(small_take), FitRequest(tmp_path), progress)
     np.testing.assert_array_equal(read_motion(tmp_path / "motion.npz").frames, [0, 1])
-    assert progress.notes[-1] == f"the 2 finished frames are kept in {tmp_path / 'motion.npz'}"
+    assert progress.notes[-1] == (
+        f"the 2 finished frames are kept in {tmp_path / 'motion.npz'}; --resume goes on"
+    )
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ from ..files import made_folder
 from ..footage.patterns import ends_in_frame, has_frame
 from ..footage.pictures import colour_picture
 from ..footage.video_writing import write_video
-from .views import View
+from ..take.views import View
 
 
 def shown_footage(views: Sequence[View], last: int, fps: float, folder: Path) -> dict[str, str]:

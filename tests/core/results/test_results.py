@@ -11,7 +11,8 @@ from silhouette_mocap.core import pipeline
 from silhouette_mocap.core.motion.motion import read_motion
 from silhouette_mocap.core.pipeline import FitRequest, fit
 from silhouette_mocap.core.progress import Silence
-from silhouette_mocap.core.take import read_take, results
+from silhouette_mocap.core.results import writing
+from silhouette_mocap.core.take import read_take
 
 
 class Notes(Silence):
@@ -38,8 +39,8 @@ def unfinished(take_file, out, count, monkeypatch, failure=KeyboardInterrupt, **
     """The notes of a fit that fails after ``count`` frames."""
     track, notes = pipeline.track, Notes()
 
-    def failing(tracker, pose, frames):
-        for number, found in enumerate(track(tracker, pose, frames)):
+    def failing(*search):
+        for number, found in enumerate(track(*search)):
             if number == count:
                 raise failure
             yield found
@@ -79,7 +80,7 @@ def test_a_report_that_cannot_be_made_costs_no_frame(take_file, tmp_path, monkey
     def failing(motion, fits):
         raise ZeroDivisionError
 
-    monkeypatch.setattr(results, "fit_quality", failing)
+    monkeypatch.setattr(writing, "fit_quality", failing)
     with pytest.raises(ZeroDivisionError):
         fit(read_take(take_file), FitRequest(tmp_path, frames=(0, 1)), Silence())
     assert kept_frames(tmp_path / "motion.npz") == [0, 1] and (tmp_path / "body.npz").exists()
@@ -122,7 +123,8 @@ def test_an_interrupt_that_waited_for_the_save_does_not_silence_its_note(
         raise KeyboardInterrupt
 
     notes = unfinished(take_file, tmp_path, 2, monkeypatch, OSError("planted"), shield=shield)
-    assert notes.told == [f"the 2 finished frames are kept in {tmp_path / 'motion.npz'}"]
+    path = tmp_path / "motion.npz"
+    assert notes.told == [f"the 2 finished frames are kept in {path}; --resume goes on"]
 
 
 def test_an_unfinished_fit_spares_a_longer_one(take_file, tmp_path, monkeypatch):
@@ -132,7 +134,7 @@ def test_an_unfinished_fit_spares_a_longer_one(take_file, tmp_path, monkeypatch)
     partial = tmp_path / "motion.partial.npz"
     assert notes.told == [
         f"the 2 finished frames are kept in {partial}, "
-        "beside the longer motion.npz of an earlier fit"
+        "beside the longer motion.npz of an earlier fit; --resume goes on"
     ]
     assert kept_frames(partial) == [0, 1]
     assert {name: (tmp_path / name).read_bytes() for name in before} == before

@@ -5,8 +5,8 @@ import shutil
 import pytest
 from silhouette_mocap.core.pipeline import FitRequest, fit
 from silhouette_mocap.core.progress import Silence
+from silhouette_mocap.core.results.exporting import export
 from silhouette_mocap.core.take import read_take
-from silhouette_mocap.core.take.exporting import export
 
 
 @pytest.fixture

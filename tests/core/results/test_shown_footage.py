@@ -7,8 +7,8 @@ import cv2
 import numpy as np
 import pytest
 from silhouette_mocap.core.footage.patterns import ends_in_frame
+from silhouette_mocap.core.results.shown_footage import shown_footage
 from silhouette_mocap.core.take import read_take
-from silhouette_mocap.core.take.shown_footage import shown_footage
 from silhouette_mocap.core.take.views import open_views
 
 NUMBERED = "masks/{camera}/{frame:06d}.png"

@@ -1,25 +1,28 @@
 """What a fit leaves in its folder: motion.npz, body.npz and report.json."""
 
-from collections.abc import Callable, Sequence
+import json
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
-from ..body.body import Body
 from ..body.file import write_body
 from ..cameras.arrangement import millimetres_per_pixel
 from ..cameras.camera import Camera
 from ..errors import MocapError
-from ..fitting.tracking import FrameFit
+from ..footage.pictures import read_picture
+from ..footage.video_writing import write_video
 from ..motion.motion import Motion, read_motion, write_motion
 from ..motion.point_track import PointTrack, read_point_track
 from ..motion.recording import recorded
 from ..motion.report import fit_quality, versions, write_report
 from ..motion.scoring import score
 from ..progress import Progress
-from .take import EXPORTS, Take
-from .views import Views
+from ..take.take import EXPORTS, Take
+from ..take.views import Views
+from .fingerprint import Inputs, check_same, stamp_digests
+from .journal import UNFINISHED, Journal
 
 MOTION, BODY, REPORT = "motion.npz", "body.npz", "report.json"
 OVERLAY = "overlay.mp4"
@@ -47,24 +50,20 @@ class Outcome:
     Attributes:
         take: what was fitted.
         views: its cameras, as they were used.
-        body: the performer.
-        fits: the tracked frames in any order, at least one.
+        journal: the tracked frames.
         settings: what was asked for beside the take.
-        notes: what the user was told.
     """
 
     take: Take
     views: Views
-    body: Body
-    fits: Sequence[FrameFit]
+    journal: Journal
     settings: dict[str, object]
-    notes: tuple[str, ...]
 
     @property
     def finished(self) -> bool:
         """Whether all frames were tracked."""
         first, last = self.views.frames
-        return len(self.fits) == last - first + 1
+        return len(self.journal) == last - first + 1
 
 
 def write_results(outcome: Outcome, folder: Path, progress: Progress) -> FitResult:
@@ -73,21 +72,22 @@ def write_results(outcome: Outcome, folder: Path, progress: Progress) -> FitResu
     An unfinished fit leaves an earlier one of more frames alone and writes motion.partial.npz and
     so on beside it.
     """
-    take, views, notes = outcome.take, outcome.views, list(outcome.notes)
+    take, views, start = outcome.take, outcome.views, outcome.journal.start
+    notes = list(start.notes)
 
     def tell(note: str) -> None:
         notes.append(note)
         progress.note(note)
 
-    motion = recorded(
-        outcome.fits, outcome.body, [camera.name for camera in views.cameras], take.fps
-    )
+    fits = outcome.journal.fits()
+    motion = recorded(fits, start.body, [camera.name for camera in views.cameras], take.fps)
     files = _places(outcome, folder)
     write_motion(files[0], motion)
-    write_body(files[1], outcome.body)
+    write_body(files[1], start.body)
     _tell_files(outcome, files[0], tell)
     report = {
         "take": take.name,
+        "finished": outcome.finished,
         "settings": {
             "take": str(take.path),
             "body": str(take.performer.body),
@@ -96,12 +96,71 @@ def write_results(outcome: Outcome, folder: Path, progress: Progress) -> FitResu
         },
         "versions": versions(),
         "cameras": _camera_facts(views, motion),
-        **fit_quality(motion, outcome.fits),
+        **fit_quality(motion, fits),
         "error_mm": _error(take, motion, tell),
         "notes": notes,
+        "inputs": {**start.inputs, **stamp_digests(motion.camera_names, *outcome.journal.stamps())},
     }
     write_report(files[2], report)
     return FitResult(motion, report, files)
+
+
+def with_pictures(outcome: Outcome, result: FitResult, progress: Progress) -> FitResult:
+    """Writes overlay.mp4 of a finished fit beside its ``result``."""
+    journal = outcome.journal
+    frames = result.motion.frames.tolist()
+    path = result.files[0].with_name(OVERLAY)
+    progress.begin("overlay", len(frames))
+
+    def pictures() -> Iterator[np.ndarray]:
+        for frame in frames:
+            yield read_picture(journal.picture(frame))
+            progress.advance(frame)
+
+    write_video(path, pictures(), float(outcome.take.fps))
+    return FitResult(result.motion, result.report, (*result.files, path))
+
+
+def resumed(folder: Path, inputs: Inputs, views: Views) -> Journal | None:
+    """The unfinished fit in ``folder``, to be continued with ``inputs``; None where there is none.
+
+    Raises:
+        MocapError: it was begun with other inputs or footage, or is damaged.
+    """
+    journal = Journal.opened(folder / UNFINISHED)
+    if journal is None:
+        return None
+    check_same(journal.start.inputs, inputs, folder)
+    for frame, stamps in zip(*journal.stamps(), strict=True):
+        changed = (views.stamps(int(frame)) != stamps).any(axis=1)
+        if changed.any():
+            raise MocapError(
+                "the footage has changed since this frame was fitted",
+                "leave out --resume to fit all frames anew",
+                file=folder, camera=views.cameras[int(np.argmax(changed))].name, frame=int(frame),
+            )  # fmt: skip
+    return journal
+
+
+def finished_result(folder: Path, inputs: Inputs, views: Views) -> FitResult | None:
+    """The finished fit in ``folder``; None where there is none.
+
+    Raises:
+        MocapError: it was made from other inputs or footage.
+    """
+    try:
+        report = json.loads((folder / REPORT).read_text("utf-8"))
+        motion = read_motion(folder / MOTION)
+    except (MocapError, OSError, ValueError):
+        return None
+    if not isinstance(report, dict) or not report.get("finished"):
+        return None
+    frames = np.arange(views.frames[0], views.frames[1] + 1)
+    names = [camera.name for camera in views.cameras]
+    stamps = np.stack([views.stamps(int(frame)) for frame in frames])
+    check_same(report["inputs"], {**inputs, **stamp_digests(names, frames, stamps)}, folder)
+    files = (MOTION, BODY, REPORT, OVERLAY)
+    return FitResult(motion, report, tuple(folder / name for name in files))
 
 
 def _places(outcome: Outcome, folder: Path) -> tuple[Path, ...]:
@@ -109,7 +168,7 @@ def _places(outcome: Outcome, folder: Path) -> tuple[Path, ...]:
     if outcome.finished or not paths[0].exists():
         return paths
     try:
-        spared = len(read_motion(paths[0]).frames) > len(outcome.fits)
+        spared = len(read_motion(paths[0]).frames) > len(outcome.journal)
     except MocapError:
         # of another version, perhaps: whatever it is, it may be worth more
         spared = True
@@ -124,7 +183,8 @@ def _tell_files(outcome: Outcome, motion: Path, tell: Callable[[str], None]) -> 
     spared = motion.name != MOTION
     if not outcome.finished:
         beside = f", beside the longer {MOTION} of an earlier fit" if spared else ""
-        tell(f"the {len(outcome.fits)} finished frames are kept in {motion}{beside}")
+        kept = f"the {len(outcome.journal)} finished frames are kept in {motion}{beside}"
+        tell(f"{kept}; --resume goes on")
     names = [OVERLAY] * (not outcome.finished)
     names += [f"{outcome.take.name}.{suffix}" for suffix in EXPORTS]
     names += [_partial(motion).name]

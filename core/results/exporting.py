@@ -9,10 +9,10 @@ from ..errors import MocapError
 from ..motion.export_request import Exporter, ExportRequest
 from ..motion.formats.trc import write_trc
 from ..motion.motion import Motion, read_motion
-from .results import BODY, MOTION
+from ..take.take import Take
+from ..take.views import View, camera_names, open_views
 from .shown_footage import shown_footage
-from .take import Take
-from .views import View, camera_names, open_views
+from .writing import BODY, MOTION
 
 
 def check_formats(formats: Sequence[str], exporter: Exporter | None) -> None:

@@ -1,0 +1,1 @@
+"""What a fit leaves in its folder, while it runs and afterwards."""

@@ -1,0 +1,235 @@
+"""Finished frames of a fit that is not finished yet, kept on disk.
+
+Frames are added one by one to a file of records of one length, each with a checksum, so that
+whatever ends the program leaves all frames before the last whole. Their overlay pictures lie beside
+it. Memory does not grow with the take, and a later run goes on where this one ended.
+"""
+
+import json
+import os
+import shutil
+import zlib
+from dataclasses import dataclass
+from pathlib import Path
+
+import cv2
+import numpy as np
+
+from ..body.body import POINT_NAMES, Body
+from ..body.file import read_body, write_body
+from ..errors import MocapError
+from ..files import made_folder, unwritable
+from ..fitting.part_search import Tally
+from ..fitting.scores import LIMB_NAMES, FrameScores
+from ..fitting.tracking import FrameFit
+from ..footage.pictures import write_picture
+from ..geometry.archive import read_archive, write_archive
+from .fingerprint import Inputs
+
+UNFINISHED, SET_ASIDE = "unfinished", "unfinished.old"
+_START, _BODY, _FRAMES, _PICTURES = "start.npz", "body.npz", "frames.bin", "pictures"
+_QUALITY = (cv2.IMWRITE_JPEG_QUALITY, 90)
+
+
+@dataclass(frozen=True, eq=False)
+class Start:
+    """What a fit knows before its first frame.
+
+    Attributes:
+        inputs: what it depends on.
+        factors: by which each of the V views is reduced.
+        body: the performer.
+        pose: (D,) the initial pose.
+        notes: what the user was told.
+    """
+
+    inputs: Inputs
+    factors: tuple[int, ...]
+    body: Body
+    pose: np.ndarray
+    notes: tuple[str, ...]
+
+
+class Journal:
+    """The finished frames in ``folder``.
+
+    Args:
+        folder: where they are kept.
+        start: how they began.
+    """
+
+    def __init__(self, folder: Path, start: Start):
+        self.folder, self.start = folder, start
+        self._kind = _record(len(start.pose), len(start.factors))
+        self._file = folder / _FRAMES
+        self._count = self._mended()
+
+    @classmethod
+    def begun(cls, folder: Path, start: Start) -> "Journal":
+        """An empty journal in a new ``folder``.
+
+        Raises:
+            MocapError: it cannot be written.
+        """
+        made_folder(folder)
+        write_body(folder / _BODY, start.body)
+        # written last: it makes the journal whole
+        write_archive(
+            folder / _START,
+            inputs=json.dumps(start.inputs),
+            factors=np.array(start.factors, np.int64),
+            pose=start.pose,
+            notes=json.dumps(start.notes),
+        )
+        return cls(folder, start)
+
+    @classmethod
+    def opened(cls, folder: Path) -> "Journal | None":
+        """The journal in ``folder`` with its whole frames; None where there is none.
+
+        Raises:
+            MocapError: it is damaged.
+        """
+        if not (folder / _START).exists():
+            return None
+        stored = read_archive(folder / _START, "start of a fit", "leave out --resume")
+        start = Start(
+            inputs=json.loads(str(stored["inputs"])),
+            factors=tuple(stored["factors"].tolist()),
+            body=read_body(folder / _BODY),
+            pose=stored["pose"],
+            notes=tuple(json.loads(str(stored["notes"]))),
+        )
+        return cls(folder, start)
+
+    def __len__(self) -> int:
+        return self._count
+
+    def add(self, fit: FrameFit, stamps: np.ndarray, picture: np.ndarray) -> None:
+        """One more finished frame.
+
+        Args:
+            fit: the frame.
+            stamps: (V, 2) of the files it was read from.
+            picture: (H, W, 3) uint8 BGR overlay.
+
+        Raises:
+            MocapError: the disk refuses it.
+        """
+        write_picture(self.picture(fit.frame), picture, _QUALITY)
+        record = _packed(fit, stamps, self._kind)
+        try:
+            with self._file.open("ab") as stream:
+                stream.write(record.tobytes())
+                stream.flush()
+                os.fsync(stream.fileno())
+        except OSError as error:
+            raise unwritable(self._file, error) from error
+        self._count += 1
+
+    def fits(self) -> list[FrameFit]:
+        """The finished frames in the order they were added."""
+        return [_unpacked(record) for record in self._records()]
+
+    def poses(self) -> np.ndarray:
+        """(n, D) their poses, in that order."""
+        return self._records()["pose"]
+
+    def stamps(self) -> tuple[np.ndarray, np.ndarray]:
+        """(n,) their numbers and (n, V, 2) the stamps of their files, in that order."""
+        records = self._records()
+        return records["frame"], records["stamps"]
+
+    def picture(self, frame: int) -> Path:
+        """The JPEG file of one frame's overlay."""
+        return self.folder / _PICTURES / f"{frame:06d}.jpg"
+
+    def remove(self) -> None:
+        """Ends the journal, as its frames have gone into the results."""
+        (self.folder / _START).unlink()
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+    def _records(self) -> np.ndarray:
+        if not self._count:
+            return np.zeros(0, self._kind)
+        return np.fromfile(self._file, self._kind, self._count)
+
+    def _mended(self) -> int:
+        """How many records at the file's start are whole; what follows them is cut off."""
+        if not self._file.exists():
+            return 0
+        records = np.fromfile(self._file, self._kind)
+        whole = 0
+        while whole < len(records) and self._is_whole(records[whole]):
+            whole += 1
+        os.truncate(self._file, whole * self._kind.itemsize)
+        return whole
+
+    def _is_whole(self, record: np.void) -> bool:
+        sound = zlib.crc32(record.tobytes()[:-4]) == record["check"]
+        return sound and self.picture(int(record["frame"])).exists()
+
+
+def set_aside(out: Path) -> int:
+    """Moves a journal in ``out`` away, over one moved before, and returns its frames.
+
+    One without frames goes.
+    """
+    try:
+        journal = Journal.opened(out / UNFINISHED)
+    except MocapError:
+        journal = None
+    if journal is None or not len(journal):
+        shutil.rmtree(out / UNFINISHED, ignore_errors=True)
+        return 0
+    shutil.rmtree(out / SET_ASIDE, ignore_errors=True)
+    journal.folder.replace(out / SET_ASIDE)
+    return len(journal)
+
+
+def _record(dofs: int, views: int) -> np.dtype:
+    return np.dtype(
+        [
+            ("frame", "<i8"),
+            ("pose", "<f8", (dofs,)),
+            ("xor_px", "<i8", (views,)),
+            ("iou", "<f8", (views,)),
+            ("contour_px", "<f8"),
+            ("limb_residual", "<f8", (len(LIMB_NAMES),)),
+            ("confidence", "<f8", (len(POINT_NAMES),)),
+            ("lost", "?"),
+            ("evaluated", "<i8"),
+            ("outside_windows", "<i8"),
+            ("seconds", "<f8"),
+            ("stamps", "<i8", (views, 2)),
+            ("check", "<u4"),
+        ]
+    )
+
+
+_SCORES = ("xor_px", "iou", "contour_px", "limb_residual", "confidence", "lost")
+
+
+def _packed(fit: FrameFit, stamps: np.ndarray, kind: np.dtype) -> np.ndarray:
+    record = np.zeros((), kind)
+    for name in _SCORES:
+        record[name] = getattr(fit.scores, name)
+    record["frame"], record["pose"], record["seconds"] = fit.frame, fit.pose, fit.seconds
+    record["evaluated"] = fit.tally.evaluated
+    record["outside_windows"] = fit.tally.outside_windows
+    record["stamps"] = stamps
+    record["check"] = zlib.crc32(record.tobytes()[:-4])
+    return record
+
+
+def _unpacked(record: np.void) -> FrameFit:
+    scores = {name: record[name] for name in _SCORES if name not in ("contour_px", "lost")}
+    return FrameFit(
+        frame=int(record["frame"]),
+        pose=record["pose"],
+        scores=FrameScores(
+            **scores, contour_px=float(record["contour_px"]), lost=bool(record["lost"])
+        ),
+        tally=Tally(int(record["evaluated"]), int(record["outside_windows"])),
+        seconds=float(record["seconds"]),
+    )

@@ -1,0 +1,129 @@
+"""Finished frames outlive whatever ends the program."""
+
+import numpy as np
+import pytest
+from silhouette_mocap.core.body.kinematics import points
+from silhouette_mocap.core.errors import MocapError
+from silhouette_mocap.core.fitting.part_search import Tally
+from silhouette_mocap.core.fitting.scores import FrameScores
+from silhouette_mocap.core.fitting.tracking import FrameFit
+from silhouette_mocap.core.results.journal import SET_ASIDE, UNFINISHED, Journal, Start, set_aside
+from synthetic import small_body
+
+VIEWS = 3
+PICTURE = np.zeros((8, 8, 3), np.uint8)
+
+
+def frame_fit(frame: int) -> FrameFit:
+    rng = np.random.default_rng(frame)
+    body = small_body("sixteen_segment")
+    scores = FrameScores(
+        xor_px=rng.integers(0, 999, VIEWS),
+        iou=np.array([0.1, np.nan, 1 / 3]),
+        contour_px=rng.random(),
+        limb_residual=rng.random(5),
+        confidence=rng.random(14),
+        lost=bool(frame % 2),
+    )
+    return FrameFit(frame, rng.random(len(body.dofs)), scores, Tally(frame, 7), rng.random())
+
+
+def stamps(frame: int) -> np.ndarray:
+    return np.arange(VIEWS * 2).reshape(VIEWS, 2) + frame * 10**15
+
+
+def begun(folder, frames=()) -> Journal:
+    body = small_body("sixteen_segment")
+    start = Start({"fps": "15"}, (1, 2, 1), body, body.rest_pose + 0.1, ("beware",))
+    journal = Journal.begun(folder, start)
+    for frame in frames:
+        journal.add(frame_fit(frame), stamps(frame), PICTURE)
+    return journal
+
+
+def test_what_was_added_comes_back_to_the_last_bit(tmp_path):
+    begun(tmp_path / "j", (5, 6, 4))
+    journal = Journal.opened(tmp_path / "j")
+    assert len(journal) == 3
+    for found, frame in zip(journal.fits(), (5, 6, 4), strict=True):
+        wanted = frame_fit(frame)
+        assert (found.frame, found.tally, found.seconds) == (frame, wanted.tally, wanted.seconds)
+        np.testing.assert_array_equal(found.pose, wanted.pose)
+        for name in vars(wanted.scores):
+            np.testing.assert_array_equal(
+                getattr(found.scores, name), getattr(wanted.scores, name), strict=True
+            )
+    frames, kept = journal.stamps()
+    np.testing.assert_array_equal(frames, [5, 6, 4])
+    np.testing.assert_array_equal(kept, [stamps(f) for f in (5, 6, 4)])
+
+
+def test_how_it_began_comes_back(tmp_path):
+    wanted = begun(tmp_path / "j").start
+    found = Journal.opened(tmp_path / "j").start
+    assert (found.inputs, found.factors, found.notes) == ({"fps": "15"}, (1, 2, 1), ("beware",))
+    np.testing.assert_array_equal(found.pose, wanted.pose)
+    pose = wanted.pose[None]
+    np.testing.assert_array_equal(points(found.body, pose), points(wanted.body, pose))
+
+
+@pytest.mark.parametrize("lost", [1, 40, -1])
+def test_a_record_cut_short_is_dropped_and_the_next_takes_its_place(tmp_path, lost):
+    begun(tmp_path / "j", (5, 6))
+    file = tmp_path / "j" / "frames.bin"
+    whole = file.read_bytes()
+    file.write_bytes(whole[:-lost] if lost > 0 else whole + b"\0" * 30)
+    journal = Journal.opened(tmp_path / "j")
+    kept = [fit.frame for fit in journal.fits()]
+    assert kept == ([5] if lost > 0 else [5, 6])
+    journal.add(frame_fit(9), stamps(9), PICTURE)
+    assert [fit.frame for fit in Journal.opened(tmp_path / "j").fits()] == [*kept, 9]
+
+
+def test_a_damaged_record_ends_the_journal(tmp_path):
+    begun(tmp_path / "j", (5, 6, 7))
+    file = tmp_path / "j" / "frames.bin"
+    data = bytearray(file.read_bytes())
+    data[len(data) // 2] ^= 1
+    file.write_bytes(data)
+    assert [fit.frame for fit in Journal.opened(tmp_path / "j").fits()] == [5]
+
+
+def test_a_frame_without_its_picture_counts_as_not_finished(tmp_path):
+    begun(tmp_path / "j", (5, 6)).picture(6).unlink()
+    assert [fit.frame for fit in Journal.opened(tmp_path / "j").fits()] == [5]
+
+
+def test_a_journal_whose_beginning_is_not_whole_is_none(tmp_path):
+    assert Journal.opened(tmp_path / "j") is None
+    begun(tmp_path / "j")
+    (tmp_path / "j" / "start.npz").unlink()
+    assert Journal.opened(tmp_path / "j") is None
+
+
+def test_a_damaged_beginning_is_a_fault(tmp_path):
+    begun(tmp_path / "j")
+    (tmp_path / "j" / "start.npz").write_bytes(b"junk")
+    with pytest.raises(MocapError, match=r"start\.npz: cannot be read.*leave out --resume"):
+        Journal.opened(tmp_path / "j")
+
+
+def test_a_journal_is_set_aside_over_an_older_one(tmp_path):
+    for frames in ((1,), (2, 3)):
+        begun(tmp_path / UNFINISHED, frames)
+        assert set_aside(tmp_path) == len(frames)
+    assert not (tmp_path / UNFINISHED).exists()
+    assert [fit.frame for fit in Journal.opened(tmp_path / SET_ASIDE).fits()] == [2, 3]
+
+
+def test_an_empty_journal_replaces_none(tmp_path):
+    begun(tmp_path / UNFINISHED, (1,))
+    set_aside(tmp_path)
+    begun(tmp_path / UNFINISHED)
+    assert set_aside(tmp_path) == 0 and not (tmp_path / UNFINISHED).exists()
+    assert len(Journal.opened(tmp_path / SET_ASIDE)) == 1
+
+
+def test_an_ended_journal_leaves_nothing(tmp_path):
+    begun(tmp_path / "j", (1,)).remove()
+    assert not (tmp_path / "j").exists()
