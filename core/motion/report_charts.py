@@ -38,7 +38,7 @@ def motion_charts(motion: Motion, seconds: Sequence[float]) -> Html:
 
 
 def _iou(motion: Motion) -> list[Series]:
-    mean = Series("mean of cameras", mean_iou(motion))
+    mean = Series("mean", mean_iou(motion))
     return [*_by_camera(motion, motion.iou), mean]
 
 

@@ -53,7 +53,7 @@ def write_report_page(
 def _summary(judged: Verdict, motion: Motion, report: dict) -> Html:
     error = report["error_mm"]
     figures = [
-        (f"{whole(len(motion.frames))} / {whole(judged.expected)}", "frames tracked"),
+        (whole(len(motion.frames)), f"of {counted(judged.expected, 'frame')} tracked"),
         (decimal(judged.iou, 3), "mean IoU"),
         (whole(int(motion.lost.sum())), "lost frames"),
         (f"{decimal(report['contour_px'])} px", "median contour distance"),
@@ -93,10 +93,10 @@ def _bad_frame(bad: BadFrame, picture: Callable[[int], bytes | None]) -> Html:
 def _reasons(bad: BadFrame) -> Iterator[str]:
     if bad.camera is not None:
         here, usual = (decimal(value, 3) for value in bad.camera_iou)
-        yield f"{bad.camera} fits least well for it: IoU {here}, usually {usual}"
+        yield f"worst camera {bad.camera}: IoU {here}, usually {usual}"
     if bad.limb is not None:
         here, usual = (decimal(value, 1) for value in bad.limb_px)
-        yield f"{spoken(bad.limb)} is {here} px off, usually {usual} px"
+        yield f"worst limb {spoken(bad.limb)}: {here} px off, usually {usual} px"
     if bad.hidden:
         yield f"no camera shows {', '.join(map(spoken, bad.hidden))}"
     if bad.unseen:

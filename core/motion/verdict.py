@@ -4,13 +4,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..pages.wording import counted, decimal, listed, whole
+from ..pages.wording import counted, decimal, listed, spans, whole
 from .motion import Motion
 from .worst_frames import mean_iou
 
 _GOOD_IOU, _FAIR_IOU = 0.8, 0.6
 _FAIR_LOST_SHARE = 0.05
-_MOST_NAMED = 8
+_MOST_NAMED = 6
 
 
 @dataclass(frozen=True)
@@ -69,14 +69,15 @@ def _agreement(iou: float) -> str:
 
 
 def _losses(motion: Motion) -> str:
-    lost = [str(frame) for frame in motion.frames[motion.lost]]
+    lost = motion.frames[motion.lost].tolist()
     if not lost:
         return "No frame was lost."
-    more = len(lost) - _MOST_NAMED
-    names = [*lost[:_MOST_NAMED], f"{more} more"] if more > 0 else lost
+    places = spans(lost)
+    if len(places) > _MOST_NAMED:
+        places = [*places[:_MOST_NAMED], f"{len(places) - _MOST_NAMED} further places"]
     be = "was" if len(lost) == 1 else "were"
     return (
-        f"{counted(len(lost), 'frame')} {be} lost ({listed(names)}): do not trust the pose there."
+        f"{counted(len(lost), 'frame')} {be} lost ({listed(places)}): do not trust the pose there."
     )
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 _STEPS = (1.0, 2.0, 5.0, 10.0)
-_MARKS = 5
+_FRAME_PIECES = 8
 
 
 @dataclass(frozen=True)
@@ -15,10 +15,12 @@ class Axis:
     Attributes:
         low: value at its start.
         high: value at its end, above ``low``.
+        pieces: how many parts the marks divide it into at most.
     """
 
     low: float
     high: float
+    pieces: int = 5
 
     def shares(self, values: np.ndarray) -> np.ndarray:
         """Where ``values`` lie, 0 at the start and 1 at the end."""
@@ -27,7 +29,7 @@ class Axis:
     @property
     def step(self) -> float:
         """Distance between marks: 1, 2 or 5 times a power of ten."""
-        rough = (self.high - self.low) / _MARKS
+        rough = (self.high - self.low) / self.pieces
         power = 10.0 ** np.floor(np.log10(rough))
         return float(power * next(s for s in _STEPS if s * power >= rough * (1 - 1e-9)))
 
@@ -68,4 +70,6 @@ def value_axis(values: np.ndarray, low: float | None = None, high: float | None 
 def frame_axis(frames: np.ndarray) -> Axis:
     """The axis of ``frames`` (T,), T >= 1, from the first to the last."""
     first, last = float(frames[0]), float(frames[-1])
-    return Axis(first, last) if last > first else Axis(first - 0.5, first + 0.5)
+    if last == first:
+        return Axis(first - 0.5, first + 0.5)
+    return Axis(first, last, _FRAME_PIECES)

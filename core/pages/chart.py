@@ -95,10 +95,14 @@ def chart_figure(chart: Chart) -> Html:
     )  # fmt: skip
     caption = element("figcaption", element("b", chart.title), " ", element("i", chart.unit))
     return element(
-        "figure", caption, element("div", plot, *_marks(x, y), class_="plot"), _legend(chart),
-        class_="chart", data_first=x.low, data_last=x.high, data_low=y.low, data_high=y.high,
-        data_digits=chart.scale.digits,
+        "figure", caption, element("div", plot, *_marks(x, y), class_=_plot_class(chart)),
+        _legend(chart), class_="chart", data_digits=chart.scale.digits,
+        data_first=x.low, data_last=x.high, data_low=y.low, data_high=y.high,
     )  # fmt: skip
+
+
+def _plot_class(chart: Chart) -> str:
+    return "plot dense" if len(chart.frames) > WIDTH else "plot"
 
 
 def _values_axis(chart: Chart) -> Axis:
@@ -118,7 +122,9 @@ def _lines(frames: np.ndarray, values: np.ndarray, x: Axis, y: Axis) -> list[Htm
         kept = decimated(columns.astype(int), rows)
         points = [f"{u:.1f},{v:.1f}" for u, v in zip(columns[kept], rows[kept], strict=True)]
         # a line of one point would not be drawn; one back to itself is a dot
-        found.append(element("polyline", points=" ".join(points * (2 if len(points) == 1 else 1))))
+        alone = len(points) == 1
+        shape = " ".join(points * 2 if alone else points)
+        found.append(element("polyline", points=shape, class_="dot" if alone else None))
     return found
 
 

@@ -1,6 +1,7 @@
 """Numbers as people read them."""
 
 import math
+from collections.abc import Sequence
 
 UNKNOWN = "–"
 
@@ -50,8 +51,19 @@ def data_size(count: float | None) -> str:
     return f"{count:.{digits}f} {units[power]}"
 
 
-def listed(names: list[str] | tuple[str, ...]) -> str:
+def listed(names: Sequence[str]) -> str:
     """``a, b and c``."""
     if len(names) < 2:
         return "".join(names)
     return f"{', '.join(names[:-1])} and {names[-1]}"
+
+
+def spans(numbers: Sequence[int]) -> list[str]:
+    """``3 to 5`` and ``9`` of rising numbers 3, 4, 5, 9."""
+    found: list[list[int]] = []
+    for number in numbers:
+        if found and number == found[-1][-1] + 1:
+            found[-1] = [found[-1][0], number]
+        else:
+            found.append([number])
+    return [" to ".join(map(str, span)) for span in found]
