@@ -64,12 +64,17 @@ class Console:
     """What a command does and finds, kept in the log.
 
     Args:
-        stream: where its kinds show it; standard error by default.
+        stream: where its kinds show it; by default what is standard error then.
     """
 
     def __init__(self, stream: TextIO | None = None):
-        self.stream = sys.stderr if stream is None else stream
+        self._stream = stream
         self.task = Task("", 0, 0.0)
+
+    @property
+    def stream(self) -> TextIO:
+        """Where all but results go."""
+        return sys.stderr if self._stream is None else self._stream
 
     def start(self, command: str | None) -> None:
         """The command that was asked for; None where the words name none."""

@@ -10,7 +10,7 @@ import os
 import platform
 import sys
 from collections.abc import Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
 from ..files import made_folder, unwritable
@@ -18,6 +18,7 @@ from .console import SHOWN, Console
 
 PACKAGE = __name__.removesuffix(".core.cli.logs")
 _LOGGERS = (PACKAGE, "py.warnings")
+_OPENCV_WARNINGS = 3
 _LINE = "%(asctime)s %(levelname)-7s %(name)s: %(message)s"
 _log = logging.getLogger(__name__)
 
@@ -32,7 +33,6 @@ class Log(ExitStack):
     def __init__(self, console: Console):
         super().__init__()
         self.console = console
-        _quieten_decoders()
         for name in _LOGGERS:
             self.enter_context(_own_handlers(logging.getLogger(name)))
         logging.captureWarnings(True)
@@ -46,6 +46,7 @@ class Log(ExitStack):
         """
         if arguments.verbose:
             self._listen(_Shown(self.console))
+        self.enter_context(_decoders(heard=arguments.log_file is not None))
         if arguments.log_file is not None:
             self._listen(_opened(arguments.log_file))
             self.enter_context(_native_messages_into(arguments.log_file))
@@ -76,6 +77,10 @@ class _File(logging.FileHandler):
 
     def handleError(self, record: logging.LogRecord) -> None:
         pass
+
+    def close(self) -> None:
+        with suppress(OSError):
+            super().close()
 
 
 def _opened(path: Path) -> _File:
@@ -110,11 +115,20 @@ def _facts() -> Iterator[str]:
     yield ", ".join(f"{name} {version}" for name, version in versions().items())
 
 
-def _quieten_decoders() -> None:
-    """Keeps OpenCV and FFmpeg from telling of damaged files beside our own lines."""
-    os.environ.setdefault("OPENCV_LOG_LEVEL", "SILENT")
-    # "quiet" of FFmpeg; read when the first video is opened
-    os.environ.setdefault("OPENCV_FFMPEG_LOGLEVEL", "-8")
+@contextmanager
+def _decoders(heard: bool) -> Iterator[None]:
+    """Within, OpenCV and FFmpeg tell of damaged files only where that is ``heard``."""
+    import cv2  # is loaded by now; --version and --help do without
+
+    before = cv2.getLogLevel()
+    cv2.setLogLevel(_OPENCV_WARNINGS if heard else 0)
+    if not heard:
+        # FFmpeg's "quiet", which OpenCV asks for when the first video is opened
+        os.environ.setdefault("OPENCV_FFMPEG_LOGLEVEL", "-8")
+    try:
+        yield
+    finally:
+        cv2.setLogLevel(before)
 
 
 @contextmanager
@@ -126,8 +140,8 @@ def _native_messages_into(path: Path) -> Iterator[None]:
         return
     own.flush()
     target, kept = own.fileno(), os.dup(own.fileno())
-    shown = open(kept, "w", encoding=own.encoding, errors=own.errors, buffering=1)
-    with shown as sys.stderr, path.open("ab") as log:
+    text = {"encoding": own.encoding, "errors": own.errors, "buffering": 1}
+    with open(kept, "w", **text) as sys.stderr, path.open("ab") as log:
         os.dup2(log.fileno(), target)
         try:
             yield
