@@ -32,7 +32,7 @@ from .results.writing import (
     Outcome,
     finished_result,
     resumed,
-    with_pictures,
+    with_overlay,
     write_results,
 )
 from .silhouettes.silhouette import Silhouette
@@ -84,7 +84,7 @@ class FitRequest:
 
 
 def fit(take: Take, request: FitRequest, progress: Progress) -> FitResult:
-    """Tracks ``take`` and writes motion.npz, body.npz, report.json and overlay.mp4.
+    """Tracks ``take`` and writes motion.npz, body.npz, report.json, report.html and overlay.mp4.
 
     Every finished frame is kept on disk at once: whatever ends the fit, ``request.resume`` goes on
     after the last of them and comes to the same result, bit by bit. When it is interrupted or
@@ -121,7 +121,7 @@ def fit(take: Take, request: FitRequest, progress: Progress) -> FitResult:
         if len(journal):
             save()
         raise
-    result = with_pictures(outcome, result, progress)
+    result = with_overlay(outcome, result, progress)
     journal.remove()
     return result
 

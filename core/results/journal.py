@@ -144,6 +144,13 @@ class Journal:
         """The JPEG file of one frame's overlay."""
         return self.folder / _PICTURES / f"{frame:06d}.jpg"
 
+    def read_picture(self, frame: int) -> bytes | None:
+        """The contents of that file; None where it is gone."""
+        try:
+            return self.picture(frame).read_bytes()
+        except OSError:
+            return None
+
     def remove(self) -> None:
         """Ends the journal, as its frames have gone into the results."""
         (self.folder / _START).unlink()

@@ -1,4 +1,4 @@
-"""What a fit leaves in its folder: motion.npz, body.npz and report.json."""
+"""What a fit leaves in its folder: motion.npz, body.npz, report.json, report.html, overlay.mp4."""
 
 import json
 from collections.abc import Callable, Iterator
@@ -17,6 +17,7 @@ from ..motion.motion import Motion, read_motion, write_motion
 from ..motion.point_track import PointTrack, read_point_track
 from ..motion.recording import recorded
 from ..motion.report import fit_quality, versions, write_report
+from ..motion.report_page import write_report_page
 from ..motion.scoring import score
 from ..progress import Progress
 from ..take.take import EXPORTS, Take
@@ -24,7 +25,7 @@ from ..take.views import Views
 from .fingerprint import Inputs, check_same, stamp_digests
 from .journal import UNFINISHED, Journal
 
-MOTION, BODY, REPORT = "motion.npz", "body.npz", "report.json"
+MOTION, BODY, REPORT, PAGE = "motion.npz", "body.npz", "report.json", "report.html"
 OVERLAY = "overlay.mp4"
 
 
@@ -67,7 +68,7 @@ class Outcome:
 
 
 def write_results(outcome: Outcome, folder: Path, progress: Progress) -> FitResult:
-    """Writes the three files, each whole or not at all; nothing that may fail comes before them.
+    """Writes all but the overlay, each whole or not at all; nothing that may fail comes first.
 
     An unfinished fit leaves an earlier one of more frames alone and writes motion.partial.npz and
     so on beside it.
@@ -102,10 +103,11 @@ def write_results(outcome: Outcome, folder: Path, progress: Progress) -> FitResu
         "inputs": {**start.inputs, **stamp_digests(motion.camera_names, *outcome.journal.stamps())},
     }
     write_report(files[2], report)
+    write_report_page(files[3], motion, report, outcome.journal.read_picture)
     return FitResult(motion, report, files)
 
 
-def with_pictures(outcome: Outcome, result: FitResult, progress: Progress) -> FitResult:
+def with_overlay(outcome: Outcome, result: FitResult, progress: Progress) -> FitResult:
     """Writes overlay.mp4 of a finished fit beside its ``result``."""
     journal = outcome.journal
     frames = result.motion.frames.tolist()
@@ -117,7 +119,11 @@ def with_pictures(outcome: Outcome, result: FitResult, progress: Progress) -> Fi
             yield read_picture(journal.picture(frame))
             progress.advance(frame)
 
-    write_video(path, pictures(), float(outcome.take.fps))
+    try:
+        write_video(path, pictures(), float(outcome.take.fps))
+    except BaseException:
+        progress.note(f"all frames are kept in {result.files[0]}; --resume writes {OVERLAY}")
+        raise
     return FitResult(result.motion, result.report, (*result.files, path))
 
 
@@ -159,12 +165,12 @@ def finished_result(folder: Path, inputs: Inputs, views: Views) -> FitResult | N
     names = [camera.name for camera in views.cameras]
     stamps = np.stack([views.stamps(int(frame)) for frame in frames])
     check_same(report["inputs"], {**inputs, **stamp_digests(names, frames, stamps)}, folder)
-    files = (MOTION, BODY, REPORT, OVERLAY)
+    files = (MOTION, BODY, REPORT, PAGE, OVERLAY)
     return FitResult(motion, report, tuple(folder / name for name in files))
 
 
 def _places(outcome: Outcome, folder: Path) -> tuple[Path, ...]:
-    paths = tuple(folder / name for name in (MOTION, BODY, REPORT))
+    paths = tuple(folder / name for name in (MOTION, BODY, REPORT, PAGE))
     if outcome.finished or not paths[0].exists():
         return paths
     try:

@@ -105,7 +105,7 @@ def test_a_fit_may_be_cut_off_again_and_again(take_file, cut_off, tmp_path):
     assert contents(tmp_path / "out") == contents(tmp_path / "whole")
 
 
-@pytest.mark.parametrize("step", ["with_pictures", "write_results"])
+@pytest.mark.parametrize("step", ["with_overlay", "write_results"])
 def test_a_cut_while_results_are_written_is_mended(take_file, tmp_path, monkeypatch, step):
     def killed(*everything):
         raise Killed
