@@ -5,6 +5,7 @@ are those of the take: numbered files keep their numbers, videos and unnumbered 
 0.
 """
 
+import logging
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Protocol
@@ -12,10 +13,12 @@ from typing import Protocol
 import numpy as np
 
 from ..errors import MocapError
-from .patterns import for_camera, has_frame, natural_key, numbered_files
+from .patterns import for_camera, frame_numbers, has_frame, natural_key
 from .pictures import PICTURE_SUFFIXES
-from .sequence import PictureSequence
+from .sequence import ListedFiles, NumberedFiles, PictureSequence
 from .video import Video
+
+_log = logging.getLogger(__name__)
 
 
 class Footage(Protocol):
@@ -78,9 +81,16 @@ def open_footage(
     Raises:
         MocapError: nothing there, not readable, or a frame of a sequence is missing.
     """
-    path = for_camera(pattern, camera)
+    footage = _opened(for_camera(pattern, camera), camera, frames)
+    rate = "" if footage.fps is None else f", {footage.fps:g} frames per second"
+    place = for_camera(pattern, camera)
+    _log.info("camera %s: footage %s, %d x %d px%s", camera, place, *footage.size, rate)
+    return footage
+
+
+def _opened(path: str, camera: str, frames: tuple[int, int] | None) -> Footage:
     if has_frame(path):
-        return PictureSequence(camera, _numbered(path, camera), frames, path)
+        return PictureSequence(camera, _numbered(path, camera), frames)
     place = Path(path)
     if place.is_dir():
         return PictureSequence(camera, _folder(place, camera), frames)
@@ -99,22 +109,24 @@ def open_footage(
     return Video(camera, place)
 
 
-def _numbered(pattern: str, camera: str) -> dict[int, Path]:
-    files = numbered_files(pattern)
-    if not files:
+def _numbered(pattern: str, camera: str) -> NumberedFiles:
+    numbers = frame_numbers(pattern)
+    if not numbers:
         raise MocapError(
             "no picture of this name",
             "check the folder, and how many digits the frame numbers have",
             file=pattern,
             camera=camera,
         )
-    return files
+    _log.info("camera %s: %d pictures, %d to %d", camera, len(numbers), numbers[0], numbers[-1])
+    return NumberedFiles(pattern, numbers)
 
 
-def _folder(folder: Path, camera: str) -> dict[int, Path]:
+def _folder(folder: Path, camera: str) -> ListedFiles:
     paths = (path for path in folder.iterdir() if path.suffix.lower() in PICTURE_SUFFIXES)
     # hidden files: macOS leaves ._name.png beside every picture on foreign disks
-    files = sorted((path for path in paths if path.name[0] != "."), key=natural_key)
-    if not files:
+    names = sorted((path.name for path in paths if path.name[0] != "."), key=natural_key)
+    if not names:
         raise MocapError("no pictures in this folder", "check the path", file=folder, camera=camera)
-    return dict(enumerate(files))
+    _log.info("camera %s: %d pictures", camera, len(names))
+    return ListedFiles(folder, tuple(names))

@@ -7,7 +7,7 @@ import glob
 import re
 from pathlib import Path
 
-_FRAME = re.compile(r"\{frame(?::(0?\d*)d)?\}")
+_FRAME = re.compile(r"\{frame(?::(0?\d?)d)?\}")
 
 
 def for_camera(pattern: str | Path, camera: str) -> str:
@@ -31,14 +31,15 @@ def ends_in_frame(pattern: str) -> bool:
     return last is not None and len(_FRAME.findall(pattern)) == 1
 
 
-def numbered_files(pattern: str) -> dict[int, Path]:
-    """The files on disk that fit ``pattern``, by frame number, in rising order."""
-    found = {}
-    for name in glob.glob(_pieces(pattern, glob.escape, "*")):
-        hit = re.fullmatch(_pieces(Path(pattern), re.escape, r"(\d+)"), str(Path(name)))
-        if hit and str(for_frame(str(Path(pattern)), int(hit[1]))) == str(Path(name)):
-            found[int(hit[1])] = Path(name)
-    return dict(sorted(found.items()))
+def frame_numbers(pattern: str) -> list[int]:
+    """The frames of the files on disk that fit ``pattern``, rising."""
+    pattern, found = str(Path(pattern)), []
+    of_file = re.compile(_pieces(pattern, re.escape, r"(\d{1,18})"))
+    for name in glob.iglob(_pieces(pattern, glob.escape, "*")):
+        hit = of_file.fullmatch(name)
+        if hit and str(for_frame(pattern, int(hit[1]))) == name:
+            found.append(int(hit[1]))
+    return sorted(found)
 
 
 def _pieces(pattern: str | Path, escape, wildcard: str) -> str:
@@ -49,7 +50,7 @@ def _pieces(pattern: str | Path, escape, wildcard: str) -> str:
     return out + escape(text[end:])
 
 
-def natural_key(path: Path) -> tuple:
+def natural_key(name: str) -> tuple:
     """Sorts ``shot2`` before ``shot10``."""
-    parts = re.split(r"(\d+)", path.name.casefold())
+    parts = re.split(r"(\d+)", name.casefold())
     return tuple((int(part), "") if part.isdecimal() else (-1, part) for part in parts)

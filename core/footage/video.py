@@ -14,9 +14,15 @@ import numpy as np
 from ..errors import MocapError
 from .pictures import file_stamp
 
+HELD_BYTES = 64 * 2**20
+"""The most memory that going backwards takes per video."""
+
 
 class Video:
     """A video file, read forwards; going back starts again from its first frame.
+
+    Then a block of pictures up to the one asked for is held, so that going on backwards decodes
+    from the start once per block, not once per frame.
 
     Rotation that the file asks for is applied by the decoder.
 
@@ -37,7 +43,7 @@ class Video:
         fps = self._capture.get(cv2.CAP_PROP_FPS)
         self.fps = float(fps) if 0 < fps < 10_000 else None
         self._next = 0
-        self._held: tuple[int, np.ndarray] | None = None
+        self._held: dict[int, np.ndarray] = {}
         height, width = self.picture(0).shape[:2]
         self.size = (width, height)
 
@@ -59,20 +65,29 @@ class Video:
         Raises:
             MocapError: the video ends before, or breaks off.
         """
-        if self._held is not None and self._held[0] == frame:
-            return self._held[1]
+        if frame not in self._held:
+            self._hold(frame)
+        return self._held[frame]
+
+    def _hold(self, frame: int) -> None:
+        """Decodes ``frame``, and those before it where that means going back."""
+        first = frame
         if frame < self._next:
+            width, height = self.size
+            first = max(0, frame + 1 - max(1, HELD_BYTES // (width * height * 3)))
             self._capture, self._next = self._opened(), 0
-        while self._next < frame:
+        # those held until now make room first
+        self._held = {}
+        while self._next < first:
             if not self._capture.grab():
                 raise self._ended(frame)
             self._next += 1
-        good, picture = self._capture.read()
-        if not good:
-            raise self._ended(frame)
-        self._next += 1
-        self._held = (frame, picture)
-        return picture
+        while self._next <= frame:
+            good, picture = self._capture.read()
+            if not good:
+                raise self._ended(frame)
+            self._held[self._next] = picture
+            self._next += 1
 
     def stamp(self, frame: int) -> tuple[int, int]:
         """Size and time of change (ns) of the video."""

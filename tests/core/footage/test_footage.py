@@ -1,3 +1,5 @@
+import os
+import tracemalloc
 from pathlib import Path
 
 import cv2
@@ -6,6 +8,8 @@ import pytest
 from silhouette_mocap.core.errors import MocapError
 from silhouette_mocap.core.footage.footage import open_footage
 from silhouette_mocap.core.footage.pictures import colour_picture, read_picture, write_picture
+
+VideoCapture = cv2.VideoCapture
 
 
 def _picture(value: int, size=(24, 16)) -> np.ndarray:
@@ -127,6 +131,77 @@ def test_video_pictures_are_the_same_forwards_backwards_and_at_random(tmp_path):
         in_order[frame] for frame in jumps
     ]
     assert list(open_footage(path, "left").frames) == list(range(10))
+
+
+class Counting:
+    """A decoder that counts the frames it goes over, and the files opened."""
+
+    opened, frames = 0, 0
+
+    def __init__(self, *source):
+        self.capture = VideoCapture(*source)
+        Counting.opened += 1
+
+    def __getattr__(self, name):
+        if name in ("grab", "read"):
+            Counting.frames += 1
+        return getattr(self.capture, name)
+
+
+def test_going_backwards_through_a_video_decodes_it_once_per_block(tmp_path, monkeypatch):
+    path = _write_video(tmp_path / "left.mp4", range(40, 240, 5))
+    forwards = [picture for _, picture in open_footage(path, "left").pictures(0, 39)]
+    monkeypatch.setattr("cv2.VideoCapture", Counting)
+    monkeypatch.setattr("silhouette_mocap.core.footage.video.HELD_BYTES", 10 * 64 * 48 * 3)
+    footage = open_footage(path, "left")
+    footage.picture(39)
+    Counting.opened = Counting.frames = 0
+    for frame in range(38, -1, -1):
+        assert np.array_equal(footage.picture(frame), forwards[frame])
+        assert len(footage._held) <= 10
+    assert Counting.opened == 4
+    assert Counting.frames == 39 + 29 + 19 + 9
+
+
+def test_a_video_of_pictures_larger_than_a_block_goes_backwards_too(tmp_path, monkeypatch):
+    path = _write_video(tmp_path / "left.mp4", range(40, 60, 5))
+    monkeypatch.setattr("silhouette_mocap.core.footage.video.HELD_BYTES", 1)
+    footage = open_footage(path, "left")
+    grey = [int(footage.picture(frame)[20, 10, 0]) for frame in (3, 2, 1, 0)]
+    assert np.abs(np.array(grey) - [55, 50, 45, 40]).max() <= 6 and len(footage._held) == 1
+
+
+@pytest.mark.parametrize(("pattern", "most"), [("cam/{frame:06d}.png", 1), ("cam", 150)])
+def test_a_long_sequence_takes_a_few_bytes_per_frame(tmp_path, pattern, most):
+    write_picture(tmp_path / "cam" / "000000.png", _picture(1))
+    for frame in range(1, 2000):
+        os.link(tmp_path / "cam" / "000000.png", tmp_path / "cam" / f"{frame:06d}.png")
+    open_footage(tmp_path / pattern, "left")
+    tracemalloc.start()
+    footage = open_footage(tmp_path / pattern, "left")
+    taken = tracemalloc.get_traced_memory()[0]
+    tracemalloc.stop()
+    assert taken < 4000 + 2000 * most
+    assert len(footage.frames) == 2000
+
+
+def test_a_sequence_with_gaps_knows_which_frames_it_has(tmp_path):
+    for frame in (3, 4, 9):
+        write_picture(tmp_path / f"{frame:06d}.png", _picture(frame))
+    footage = open_footage(tmp_path / "{frame:06d}.png", "left")
+    assert list(footage.frames) == [3, 4, 9]
+    assert footage.picture(9)[0, 0, 0] == 9
+    for frame in (2, 5, 10):
+        with pytest.raises(MocapError, match=f"frame {frame}: missing; .* frames 3 to 9"):
+            footage.picture(frame)
+
+
+def test_names_of_more_digits_than_any_count_has_are_no_frames(tmp_path):
+    for name in ("7", "9" * 30):
+        write_picture(tmp_path / f"{name}.png", _picture(1))
+    assert list(open_footage(tmp_path / "{frame}.png", "left").frames) == [7]
+    with pytest.raises(MocapError, match="only"):
+        open_footage(tmp_path / "{frame:0999999999d}.png", "left")
 
 
 def test_a_video_that_is_too_short_says_where_it_ends(tmp_path):
