@@ -79,7 +79,7 @@ def initialised(
         )
     )
     body = scaled(template, round(height / rest_height(template), 6))
-    pose = _placed(pose_of_kind(body, request.kind), body, centres[0], request.floor)
+    pose = placed(pose_of_kind(body, request.kind), body, centres[0], request.floor)
     tracker = HierarchicalTracker(body, cameras, make_evaluator)
     pose, doubt = _best_heading(tracker, frames[0], pose)
     if request.height_m is None:
@@ -90,7 +90,7 @@ def initialised(
     return FirstFit(tracker.body, pose, scores.iou, notes)
 
 
-def _placed(pose: np.ndarray, body: Body, centre: np.ndarray, floor: float) -> np.ndarray:
+def placed(pose: np.ndarray, body: Body, centre: np.ndarray, floor: float) -> np.ndarray:
     """``pose`` moved over ``centre`` (3,), the feet on the floor."""
     moved = pose.copy()
     translations = np.flatnonzero(body.dofs.kinds == DofKind.TRANSLATION)[:3]
