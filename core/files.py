@@ -1,6 +1,7 @@
 """Files that appear whole or not at all."""
 
 import errno
+import logging
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -13,6 +14,7 @@ _REMEDIES = {
     errno.ENAMETOOLONG: "give a shorter path",
 }
 _LONGEST_STEM = 100
+_log = logging.getLogger(__name__)
 
 
 @contextmanager
@@ -27,7 +29,9 @@ def whole_file(path: Path) -> Iterator[Path]:
     partial = path.with_name(f".{path.stem[:_LONGEST_STEM]}.partial{path.suffix}")
     try:
         yield partial
+        size = partial.stat().st_size
         partial.replace(path)
+        _log.debug("wrote %s, %d bytes", path, size)
     except OSError as error:
         raise unwritable(path, error) from error
     finally:

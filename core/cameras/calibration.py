@@ -5,6 +5,7 @@ often: millimetres or metres are guessed from how far apart the cameras stand, a
 be overridden. The result is always metres, Z up, OpenCV axes (FORMATS).
 """
 
+import logging
 import re
 from collections import Counter
 from collections.abc import Collection, Mapping
@@ -23,6 +24,7 @@ READERS: tuple[Reader, ...] = (
     qualisys_qca.READER,
     opencv_yml.READER,
 )
+_log = logging.getLogger(__name__)
 METRES_PER_UNIT = {"m": 1.0, "cm": 0.01, "mm": 0.001}
 WIDEST_SPREAD_IN_METRES = 50.0
 WORLD_FROM_UP = {
@@ -99,6 +101,10 @@ def read_calibration(path: str | Path, settings: CalibrationSettings | None = No
         notes.append(_unit_note(content.cameras, units))
     if settings.up is None:
         notes.extend(_up_notes(cameras))
+    how = "guessed" if guessed else "known"
+    _log.info(
+        "calibration %s: %s, %d cameras, in %s (%s)", path, reader.title, len(cameras), units, how
+    )
     return Calibration(cameras, reader.title, units, guessed, tuple(notes))
 
 

@@ -1,5 +1,6 @@
 """Frames in order: each starts from the pose of the one before and a prediction."""
 
+import logging
 import time
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
@@ -11,6 +12,7 @@ from .hierarchical import HierarchicalTracker
 from .part_search import Tally
 from .scores import FrameScores, frame_scores
 
+_log = logging.getLogger(__name__)
 _DAMPING = 0.7
 """Share of the last frame's movement that is expected to go on."""
 
@@ -56,4 +58,7 @@ def track(
         last = fit.pose
         scores = frame_scores(tracker.evaluator, fit.pose, silhouettes)
         seconds = time.perf_counter() - start
+        work = (frame, seconds, fit.tally.evaluated, fit.tally.outside_windows)
+        _log.info("frame %d: %.3f s, %d evaluations, %d outside windows", *work)
+        _log.info("frame %d: IoU %s, XOR px %s", frame, scores.iou.round(3), scores.xor_px)
         yield FrameFit(frame, fit.pose, scores, fit.tally, seconds)

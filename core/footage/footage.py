@@ -82,9 +82,13 @@ def open_footage(
         MocapError: nothing there, not readable, or a frame of a sequence is missing.
     """
     footage = _opened(for_camera(pattern, camera), camera, frames)
-    rate = "" if footage.fps is None else f", {footage.fps:g} frames per second"
-    place = for_camera(pattern, camera)
-    _log.info("camera %s: footage %s, %d x %d px%s", camera, place, *footage.size, rate)
+    place, length = for_camera(pattern, camera), ""
+    if isinstance(footage, PictureSequence):
+        there = footage.frames
+        length = f", {len(there)} pictures from {there[0]} to {there[-1]}"
+    elif footage.fps is not None:
+        length = f", {footage.fps:g} frames per second"
+    _log.info("camera %s: footage %s, %d x %d px%s", camera, place, *footage.size, length)
     return footage
 
 
@@ -118,7 +122,6 @@ def _numbered(pattern: str, camera: str) -> NumberedFiles:
             file=pattern,
             camera=camera,
         )
-    _log.info("camera %s: %d pictures, %d to %d", camera, len(numbers), numbers[0], numbers[-1])
     return NumberedFiles(pattern, numbers)
 
 
@@ -128,5 +131,4 @@ def _folder(folder: Path, camera: str) -> ListedFiles:
     names = sorted((path.name for path in paths if path.name[0] != "."), key=natural_key)
     if not names:
         raise MocapError("no pictures in this folder", "check the path", file=folder, camera=camera)
-    _log.info("camera %s: %d pictures", camera, len(names))
     return ListedFiles(folder, tuple(names))

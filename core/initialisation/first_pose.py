@@ -6,6 +6,7 @@ heading from the XOR energy: a ring of headings is fitted roughly, and the best 
 since a silhouette looks much the same from in front and from behind, and the best fit wins.
 """
 
+import logging
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -20,6 +21,7 @@ from ..silhouettes.silhouette import Silhouette
 from .pose_kinds import pose_of_kind
 from .standing import body_centre, row_span, standing_height
 
+_log = logging.getLogger(__name__)
 _HEADINGS = 12
 _COMPLETE_FITS = 4
 _EXTENT_PASSES = 2
@@ -79,12 +81,14 @@ def initialised(
         )
     )
     body = scaled(template, round(height / rest_height(template), 6))
+    _log.info("performer %.3f m tall, around %s m", height, centres[0].round(3).tolist())
     pose = placed(pose_of_kind(body, request.kind), body, centres[0], request.floor)
     tracker = HierarchicalTracker(body, cameras, make_evaluator)
     pose, doubt = _best_heading(tracker, frames[0], pose)
     if request.height_m is None:
         tracker, pose = _matched_extent(tracker, frames, pose, make_evaluator)
     scores = frame_scores(tracker.evaluator, pose, frames[0])
+    _log.info("first pose: IoU by camera %s", scores.iou.round(3).tolist())
     height = rest_height(tracker.body)
     notes = (f"The performer is {height:.2f} m tall; {doubt}.",)
     return FirstFit(tracker.body, pose, scores.iou, notes)
@@ -121,6 +125,9 @@ def _best_heading(
     starts = [fit.pose for fit in rough[:_COMPLETE_FITS]]
     fits = sorted((tracker.fit(silhouettes, start, start) for start in starts), key=_energy)
     yaw = _yaw_dof(body)
+    for kind, found in (("rough", rough), ("complete", fits)):
+        shown = (f"{round(np.degrees(fit.pose[yaw])) % 360}°: {fit.energy}" for fit in found)
+        _log.info("%s fits, energy by heading: %s", kind, ", ".join(shown))
     best = fits[0]
     others = [fit for fit in fits if np.cos(fit.pose[yaw] - best.pose[yaw]) < np.cos(np.pi / 4)]
     if not others:

@@ -4,6 +4,7 @@ A file may extend another one; tables are merged key by key, the extending file 
 path counts from the file it is written in.
 """
 
+import logging
 import os
 import tomllib
 from fractions import Fraction
@@ -34,6 +35,7 @@ _TOP = (
     "version", "name", "fps", "frames", "initial_pose", "extends", "locks",
     "cameras", "footage", "performer", "world", "fit", "export",
 )  # fmt: skip
+_log = logging.getLogger(__name__)
 _LATER_EXTRACTIONS = ("horprasert", "chroma_key", "mog2", "knn")
 _LATER_TRACKERS = ("contour", "monte_carlo")
 _LATER_EXPORTS = ("c3d", "glb", "usd")
@@ -54,7 +56,10 @@ def read_take(path: str | Path, root: str | Path | None = None) -> Take:
     path = Path(path).resolve()
     top_folder = path.parent.parent if root is None else Path(root).resolve()
     inside(path, top_folder, path, "the take itself")
-    return _take(Table(_merged(path, top_folder, ()), path))
+    take = _take(Table(_merged(path, top_folder, ()), path))
+    _log.info("take %s from %s; all its files lie in %s", take.name, path, top_folder)
+    _log.debug("%s", take)
+    return take
 
 
 def _merged(path: Path, root: Path, above: tuple[Path, ...]) -> dict[str, Any]:

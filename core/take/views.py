@@ -1,5 +1,6 @@
 """What the cameras of a take see: calibration and footage brought together, camera by camera."""
 
+import logging
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
@@ -27,6 +28,7 @@ from .reduction import Reduction, fitting_reduction
 from .table import Table
 from .take import Take
 
+_log = logging.getLogger(__name__)
 _FEWEST_CAMERAS = 2
 
 
@@ -104,6 +106,8 @@ class Views:
             replace(view, reduction=Reduction(factor))
             for view, factor in zip(self.views, factors, strict=True)
         ]
+        sizes = (f"{view.camera.name} {'{} x {}'.format(*view.camera.size)}" for view in views)
+        _log.info("tracked at px: %s", ", ".join(sizes))
         return replace(self, views=tuple(views))
 
 
@@ -192,6 +196,11 @@ def _view(take: Take, calibrated: Camera, footage: Footage) -> View:
     if take.footage.ignore is not None:
         ignored |= _ignore_mask(take.footage.ignore, name, size)
     undistortion = Undistortion(camera)
+    _log.info(
+        "camera %s: focal length %.1f px, centre %s m, %s",
+        name, camera.matrix[0, 0], camera.centre.round(3).tolist(),
+        "no lens distortion" if undistortion.is_identity else "lens distortion taken out",
+    )  # fmt: skip
     source = SilhouetteSource(
         footage=footage,
         extractor=_extractor(take, footage),
