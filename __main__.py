@@ -1,20 +1,34 @@
 """The command line: ``silhouette-mocap`` and ``python -m silhouette_mocap``."""
 
+import os
+import signal
 import sys
-from collections.abc import Sequence
 from importlib.util import find_spec
 
+_SIGNALS = (signal.SIGINT, signal.SIGTERM)
+_INTERRUPTED = 130
 
-def main(argv: Sequence[str] | None = None) -> int:
-    """Runs one command and returns its exit code.
+
+def main() -> int:
+    """Runs the command that the program was started with and returns its exit code.
 
     Where Blender can be imported, its exporter is handed to the command; it is loaded only when
     something is exported.
     """
+    # while modules load there is nothing to be saved yet
+    _handle(lambda *_: os._exit(_INTERRUPTED))
     from .core.cli import main as run
 
     exporter = None if find_spec("bpy") is None else _export_with_blender
-    return run(sys.argv[1:] if argv is None else argv, exporter)
+    code = run(sys.argv[1:], exporter)
+    # what comes while Python shuts down must not change the exit code
+    _handle(signal.SIG_IGN)
+    return code
+
+
+def _handle(handler) -> None:
+    for number in _SIGNALS:
+        signal.signal(number, handler)
 
 
 def _export_with_blender(request):

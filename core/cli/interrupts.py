@@ -25,6 +25,11 @@ def interruptible() -> Iterator[None]:
     before = _set([interrupt] * len(_SIGNALS))
     try:
         yield
+    except Exception as error:
+        if interrupts:
+            # libraries turn it into errors of their own, as numpy does while it is imported
+            raise KeyboardInterrupt from error
+        raise
     finally:
         _set([signal.SIG_IGN] * len(_SIGNALS) if interrupts else before)
 
