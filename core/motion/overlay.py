@@ -14,7 +14,10 @@ from ..silhouettes.silhouette import Silhouette
 
 BOTH, MODEL_ONLY, OBSERVED_ONLY = (60, 200, 60), (40, 40, 240), (255, 120, 30)
 """Colours, BGR."""
-_OPACITY = 0.6
+_LEGEND = ((BOTH, "both"), (MODEL_ONLY, "model only"), (OBSERVED_ONLY, "performer only"))
+_OPACITIES = {BOTH: 0.6, MODEL_ONLY: 0.9, OBSERVED_ONLY: 0.9}
+_LINE = (70, 70, 70)
+_STRIP_HEIGHT = 24
 _TILE_WIDTH = 480
 _LABEL = {"fontFace": cv2.FONT_HERSHEY_SIMPLEX, "fontScale": 0.5, "color": (255, 255, 255)}
 
@@ -44,9 +47,7 @@ def overlay_picture(tiles: Sequence[Tile], title: str) -> np.ndarray:
     padded = [_padded(picture, height) for picture in pictures]
     padded += [np.zeros_like(padded[0])] * (-len(padded) % columns)
     rows = [np.hstack(padded[i : i + columns]) for i in range(0, len(padded), columns)]
-    strip = np.zeros((24, columns * _TILE_WIDTH, 3), np.uint8)
-    cv2.putText(strip, title, (8, 17), **_LABEL, lineType=cv2.LINE_AA)
-    return _padded(np.vstack([strip, *rows]))
+    return _padded(np.vstack([_titled_strip(title, columns * _TILE_WIDTH), *rows]))
 
 
 def coloured(tile: Tile) -> np.ndarray:
@@ -60,8 +61,25 @@ def coloured(tile: Tile) -> np.ndarray:
         (drawn & ~seen, MODEL_ONLY),
         (seen & ~drawn, OBSERVED_ONLY),
     ):
-        picture[where] = (1 - _OPACITY) * picture[where] + _OPACITY * np.array(colour)
+        opacity = _OPACITIES[colour]
+        picture[where] = (1 - opacity) * picture[where] + opacity * np.array(colour)
     return picture
+
+
+def _titled_strip(title: str, width: int) -> np.ndarray:
+    """The title, then what the colours mean."""
+    strip = np.zeros((_STRIP_HEIGHT, width, 3), np.uint8)
+    x = 8 + _written(strip, title, 8) + 24
+    for colour, meaning in _LEGEND:
+        cv2.rectangle(strip, (x, 7), (x + 10, 17), colour, cv2.FILLED)
+        x += 16 + _written(strip, meaning, x + 16) + 16
+    return strip
+
+
+def _written(picture: np.ndarray, text: str, x: int) -> int:
+    """Writes ``text`` at the top and returns its width."""
+    cv2.putText(picture, text, (x, 17), **_LABEL, lineType=cv2.LINE_AA)
+    return cv2.getTextSize(text, _LABEL["fontFace"], _LABEL["fontScale"], 1)[0][0]
 
 
 def _scaled_and_labelled(tile: Tile) -> np.ndarray:
@@ -70,7 +88,8 @@ def _scaled_and_labelled(tile: Tile) -> np.ndarray:
     shrinks = picture.shape[1] > _TILE_WIDTH
     method = cv2.INTER_AREA if shrinks else cv2.INTER_NEAREST
     picture = cv2.resize(picture, (_TILE_WIDTH, height), interpolation=method)
-    cv2.putText(picture, tile.label, (8, 18), **_LABEL, lineType=cv2.LINE_AA)
+    _written(picture, tile.label, 8)
+    picture[0], picture[:, 0] = _LINE, _LINE
     return picture
 
 
