@@ -1,0 +1,171 @@
+"""Everything that a fit of a take will meet, looked at beforehand, faults and all."""
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from ..body.file import read_body
+from ..body.kinematics import rest_height
+from ..body.templates import template
+from ..cameras.arrangement import opposite_pairs
+from ..cameras.calibration import CalibrationSettings, read_calibration
+from ..errors import MocapError
+from ..fitting.hierarchical import EvaluatorFactory
+from ..initialisation.standing import body_centre, standing_height
+from ..native.library import load
+from ..silhouettes.silhouette import Silhouette
+from .camera_facts import CameraFacts, Performer, camera_facts, units_in_words
+from .estimate import Estimate, Trial, estimated
+from .footage_check import FootageFacts, checked_footage
+from .take import Take
+from .views import Views, open_views
+
+
+@dataclass(frozen=True)
+class CheckRequest:
+    """How to check.
+
+    Attributes:
+        initial_frames: gives the frames that the initial pose is sought in, of a take and its
+            first and last frame.
+        make_evaluator: renders and compares in the trial.
+        further: more checks, which raise MocapError.
+        seconds: how long to read footage.
+    """
+
+    initial_frames: Callable[[Take, tuple[int, int]], Sequence[int]]
+    make_evaluator: EvaluatorFactory
+    further: Sequence[Callable[[], object]] = ()
+    seconds: float = 8.0
+
+
+@dataclass(frozen=True, eq=False)
+class TakeCheck:
+    """What is known of a take.
+
+    Attributes:
+        take: the take.
+        frames: first and last frame, inclusive; None where that cannot be told.
+        units: of the calibration, in words; empty where it cannot be read.
+        cameras: those without a fault of their own.
+        opposite: pairs of their names that face each other.
+        footage: theirs.
+        performer: None where the silhouettes do not tell.
+        estimate: None where something is at fault.
+        notes: sentences that the user should see.
+        faults: what keeps a fit from running; empty where nothing does.
+    """
+
+    take: Take
+    frames: tuple[int, int] | None = None
+    units: str = ""
+    cameras: tuple[CameraFacts, ...] = ()
+    opposite: tuple[tuple[str, str], ...] = ()
+    footage: tuple[FootageFacts, ...] = ()
+    performer: Performer | None = None
+    estimate: Estimate | None = None
+    notes: tuple[str, ...] = ()
+    faults: tuple[MocapError, ...] = ()
+
+
+class _Faults:
+    """Faults met so far, each once."""
+
+    def __init__(self):
+        self._met: dict[str, MocapError] = {}
+
+    def add(self, fault: MocapError) -> None:
+        self._met.setdefault(str(fault), fault)
+
+    @contextmanager
+    def noted(self) -> Iterator[None]:
+        try:
+            yield
+        except MocapError as error:
+            self.add(error)
+
+    def __len__(self) -> int:
+        return len(self._met)
+
+    def met(self) -> tuple[MocapError, ...]:
+        return tuple(self._met.values())
+
+
+def checked(take: Take, request: CheckRequest) -> TakeCheck:
+    """All that can be found out about ``take``; a fault in one part does not hide others."""
+    faults, found = _Faults(), TakeCheck(take)
+    with faults.noted():
+        found = _checked_views(take, request, faults)
+    body = take.performer.body
+    for check in (
+        lambda: read_body(body) if isinstance(body, Path) else template(body),
+        load,
+        *request.further,
+    ):
+        with faults.noted():
+            check()
+    return replace(found, faults=faults.met())
+
+
+def _checked_views(take: Take, request: CheckRequest, faults: _Faults) -> TakeCheck:
+    views = _opened(take, faults)
+    found = TakeCheck(take, views.frames, _units(take, views), notes=views.notes)
+    start, silhouettes, performer = 0, (), None
+    with faults.noted():
+        begin = request.initial_frames(take, views.frames)
+        views, start = views.reduced(begin), begin[0]
+        silhouettes = views.silhouettes(start)
+        performer = _performer(take, views, silhouettes)
+    footage = checked_footage(views, request.seconds)
+    for fault in footage.faults:
+        faults.add(fault)
+    estimate = None
+    if performer is not None and not faults:
+        trial = Trial(take, views, start, silhouettes, performer, request.make_evaluator)
+        with faults.noted():
+            estimate = estimated(trial, footage.seconds)
+    return replace(
+        found,
+        cameras=tuple(camera_facts(view, performer, take.floor) for view in views.views),
+        opposite=tuple(opposite_pairs(views.cameras)),
+        footage=footage.cameras,
+        performer=performer,
+        estimate=estimate,
+    )
+
+
+def _opened(take: Take, faults: _Faults) -> Views:
+    """The views of the cameras without a fault; ``faults`` gets one for each of the others.
+
+    Raises:
+        MocapError: a fault of another kind.
+    """
+    without: list[str] = []
+    while True:
+        try:
+            return open_views(take, without)
+        except MocapError as error:
+            if error.camera is None or error.camera in without:
+                raise
+            faults.add(error)
+            without.append(error.camera)
+
+
+def _units(take: Take, views: Views) -> str:
+    wanted = take.cameras
+    sizes = {view.camera.name: view.source.footage.size for view in views.views}
+    settings = CalibrationSettings(
+        wanted.format, wanted.units, wanted.up, sizes, only=frozenset(sizes)
+    )
+    return units_in_words(read_calibration(wanted.calibration, settings), wanted.units)
+
+
+def _performer(take: Take, views: Views, silhouettes: tuple[Silhouette, ...]) -> Performer:
+    centre, body = body_centre(views.cameras, silhouettes), take.performer.body
+    height = take.performer.height_m
+    if height is None and isinstance(body, Path):
+        height = rest_height(read_body(body))
+    if height is None:
+        height = standing_height(views.cameras, silhouettes, centre, take.floor)
+    return Performer(centre, height)

@@ -1,0 +1,183 @@
+"""How long a fit will take here, and what memory and disk it will need.
+
+One round of the real search is run on the first frame, at the working size. Its time and the others
+measured (reading, overlay pictures) are taken times what a whole fit needs of each, known from fits
+of takes with four to eight cameras of 320 x 240 to 1152 x 1440 px.
+"""
+
+import time
+from dataclasses import dataclass, replace
+
+import cv2
+import numpy as np
+
+from ..body.body import Body
+from ..body.file import read_body
+from ..body.kinematics import rest_height
+from ..body.scaling import scaled
+from ..body.templates import template
+from ..fitting.hierarchical import SETTINGS, EvaluatorFactory, HierarchicalTracker
+from ..fitting.scores import frame_scores
+from ..initialisation.first_pose import placed
+from ..initialisation.pose_kinds import pose_of_kind
+from ..motion.overlay import Tile, overlay_picture
+from ..silhouettes.silhouette import Silhouette
+from .camera_facts import Performer
+from .take import Take
+from .views import Views
+
+_ROUNDS_PER_FRAME = 1.8
+_ROUNDS_OF_FIRST_POSE = 14.0
+_NUDGE_M = 0.01
+_PROGRAM_BYTES = 180e6
+_BYTES_PER_FOOTAGE_PX, _BYTES_PER_WORKING_PX = 30.0, 60.0
+_VIDEO_SHARE = 0.4
+_MOTION_BYTES_PER_DOF = 32.0
+# bytes: for the body, and for each DOF of a frame
+_EXPORT_BYTES = {"blend": (600e3, 40.0), "fbx": (600e3, 30.0), "bvh": (5e3, 14.0), "trc": (0, 10.0)}
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """What a fit will need, roughly.
+
+    Attributes:
+        frames: how many will be tracked.
+        first_pose_s: time to find the initial pose.
+        reading_s: time per frame to read the footage and make silhouettes.
+        fitting_s: time per frame to search the pose.
+        picture_s: time per frame for overlay picture and video.
+        memory_bytes: of the whole program.
+        meanwhile_bytes: on disk until the fit is finished.
+        results_bytes: on disk afterwards, by file.
+    """
+
+    frames: int
+    first_pose_s: float
+    reading_s: float
+    fitting_s: float
+    picture_s: float
+    memory_bytes: float
+    meanwhile_bytes: float
+    results_bytes: dict[str, float]
+
+    @property
+    def frame_s(self) -> float:
+        """Time per frame."""
+        return self.reading_s + self.fitting_s + self.picture_s
+
+    @property
+    def total_s(self) -> float:
+        """Time of the whole fit."""
+        return self.first_pose_s + self.frames * self.frame_s
+
+
+@dataclass(frozen=True, eq=False)
+class Trial:
+    """What is tried.
+
+    Attributes:
+        take: the take.
+        views: at the working size.
+        frame: a frame of the initial pose.
+        silhouettes: what the V cameras see in it.
+        performer: where the performer stands in it.
+        make_evaluator: renders and compares.
+    """
+
+    take: Take
+    views: Views
+    frame: int
+    silhouettes: tuple[Silhouette, ...]
+    performer: Performer
+    make_evaluator: EvaluatorFactory
+
+
+def estimated(trial: Trial, reading_s: float) -> Estimate:
+    """The estimate, after some real work on one frame.
+
+    Args:
+        trial: what to try.
+        reading_s: measured time per frame to read the footage.
+
+    Raises:
+        MocapError: the body or a picture cannot be read.
+    """
+    body = _standing_body(trial)
+    pose = pose_of_kind(body, trial.take.initial_pose.kind)
+    pose = placed(pose, body, trial.performer.centre, trial.take.floor)
+    tracker = _tracker(trial, body)
+    round_s, scores_s = _timed_round(tracker, trial.silhouettes, pose)
+    picture_s, picture_bytes = _timed_picture(tracker, trial, pose)
+    first, last = trial.views.frames
+    frames, dofs = last - first + 1, len(body.dofs)
+    motion = frames * dofs * _MOTION_BYTES_PER_DOF
+    exported = {
+        f".{name}": base + frames * dofs * per_dof
+        for name, (base, per_dof) in _EXPORT_BYTES.items()
+        if name in trial.take.exports
+    }
+    video = frames * picture_bytes * _VIDEO_SHARE
+    return Estimate(
+        frames=frames,
+        first_pose_s=_ROUNDS_OF_FIRST_POSE * round_s,
+        reading_s=reading_s,
+        fitting_s=_ROUNDS_PER_FRAME * round_s + scores_s,
+        picture_s=picture_s,
+        memory_bytes=_PROGRAM_BYTES + _picture_memory(trial.views) + 3 * motion,
+        meanwhile_bytes=frames * picture_bytes + motion,
+        results_bytes={"motion.npz": motion, "overlay.mp4": video, **exported},
+    )
+
+
+def _tracker(trial: Trial, body: Body) -> HierarchicalTracker:
+    search = trial.take.search
+    setting = replace(SETTINGS[search.setting][search.fast_motion], rounds=1)
+    return HierarchicalTracker(body, trial.views.cameras, trial.make_evaluator, setting)
+
+
+def _standing_body(trial: Trial) -> Body:
+    wanted = trial.take.performer.body
+    if not isinstance(wanted, str):
+        return read_body(wanted)
+    body = template(wanted)
+    return scaled(body, trial.performer.height_m / rest_height(body))
+
+
+def _timed_round(
+    tracker: HierarchicalTracker, silhouettes: tuple[Silhouette, ...], pose: np.ndarray
+) -> tuple[float, float]:
+    """Seconds of one round of the search, and of scoring its result."""
+    # in a motion the prediction differs from the last pose, and is searched around, too
+    predicted = pose.copy()
+    predicted[0] += _NUDGE_M
+    begun = time.perf_counter()
+    found = tracker.fit(silhouettes, pose, predicted).pose
+    searched = time.perf_counter()
+    frame_scores(tracker.evaluator, found, silhouettes)
+    return searched - begun, time.perf_counter() - searched
+
+
+def _timed_picture(
+    tracker: HierarchicalTracker, trial: Trial, pose: np.ndarray
+) -> tuple[float, float]:
+    """Seconds to make and keep one overlay picture and its part of the video, and its bytes."""
+    begun = time.perf_counter()
+    rendered = tracker.evaluator.silhouettes(pose)
+    tiles = [
+        Tile(view.camera.name, view.picture(trial.frame), seen, drawn)
+        for view, seen, drawn in zip(trial.views.views, trial.silhouettes, rendered, strict=True)
+    ]
+    picture = overlay_picture(tiles, "frame")
+    made = time.perf_counter()
+    coded = cv2.imencode(".jpg", picture, (cv2.IMWRITE_JPEG_QUALITY, 90))[1]
+    coding = time.perf_counter() - made
+    # decoding for the video costs as much as coding, and coding it anew twice as much
+    return made - begun + 4 * coding, float(coded.size)
+
+
+def _picture_memory(views: Views) -> float:
+    """Bytes that the pictures and maps of a frame take."""
+    footage = sum(np.prod(view.source.footage.size, dtype=float) for view in views.views)
+    working = sum(np.prod(camera.size, dtype=float) for camera in views.cameras)
+    return float(_BYTES_PER_FOOTAGE_PX * footage + _BYTES_PER_WORKING_PX * working)

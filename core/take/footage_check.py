@@ -1,0 +1,183 @@
+"""Footage looked at before a fit: every file's presence, and as many pictures as time allows.
+
+Pictures are read, extracted and undistorted just as a fit does it, so that faults show and the time
+is known. Files of a sequence are taken from coarse to fine, first and last one first; a video only
+runs forwards.
+"""
+
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+
+import cv2
+import numpy as np
+
+from ..errors import MocapError
+from ..footage.video import Video
+from ..silhouettes.masks import ReadyMasks
+from ..silhouettes.silhouette import Silhouette
+from .views import View, Views
+
+
+@dataclass(frozen=True, eq=False)
+class FootageFacts:
+    """The footage of one camera.
+
+    Attributes:
+        camera: the camera's name.
+        place: path or pattern.
+        is_video: one file for all frames.
+        is_masks: it shows silhouettes, not the scene.
+        there: first and last frame that exist, inclusive; a video's end as its head states it.
+        count: how many exist.
+        size: (width, height) in px.
+        fps: frames per second, where the file says so.
+        lossy: whether it was compressed with loss.
+        wanted: frames of the take.
+        looked_at: of those, pictures that were read.
+        empty: of those, silhouettes without a pixel.
+        coverage: mean share of the picture that is silhouette; NaN where none was read.
+        picture: (H, W, 3) uint8 BGR, the first at the working size; None where it cannot be read.
+        silhouette: that picture's.
+    """
+
+    camera: str
+    place: str
+    is_video: bool
+    is_masks: bool
+    there: tuple[int, int]
+    count: int
+    size: tuple[int, int]
+    fps: float | None
+    lossy: bool
+    wanted: int
+    looked_at: int
+    empty: int
+    coverage: float
+    picture: np.ndarray | None
+    silhouette: Silhouette | None
+
+
+@dataclass(frozen=True, eq=False)
+class FootageCheck:
+    """The footage of all cameras.
+
+    Attributes:
+        cameras: in the order of the views.
+        faults: the first of each camera, and every frame that is missing.
+        seconds: to read one frame of all cameras, as far as known; else NaN.
+    """
+
+    cameras: tuple[FootageFacts, ...]
+    faults: tuple[MocapError, ...]
+    seconds: float
+
+
+@dataclass
+class _Look:
+    """What is found of one camera so far."""
+
+    view: View
+    covers: list[float] = field(default_factory=list)
+    faults: list[MocapError] = field(default_factory=list)
+    first: tuple[np.ndarray, Silhouette] | None = None
+
+
+def checked_footage(views: Views, seconds: float) -> FootageCheck:
+    """What the footage of ``views`` holds, found within about ``seconds``.
+
+    At least one picture of each camera is read.
+    """
+    start = time.monotonic()
+    looks = [_Look(view) for view in views.views]
+
+    def enough() -> bool:
+        return time.monotonic() - start > seconds
+
+    with ThreadPoolExecutor(len(looks)) as pool:
+        list(pool.map(lambda look: _look(look, views.frames, enough), looks))
+    read = sum(len(look.covers) for look in looks)
+    spent = time.monotonic() - start
+    return FootageCheck(
+        cameras=tuple(_facts(look, views.frames) for look in looks),
+        faults=tuple(fault for look in looks for fault in look.faults),
+        seconds=len(looks) * spent / read if read else float("nan"),
+    )
+
+
+def _look(look: _Look, frames: tuple[int, int], enough: Callable[[], bool]) -> None:
+    view, footage = look.view, look.view.source.footage
+    order = range(frames[0], frames[1] + 1)
+    if not isinstance(footage, Video):
+        missing = set(order) - set(footage.frames)
+        look.faults.extend(_fault_of(view, min(missing)) if missing else ())
+        spread = (frames[0] + k for k in coarse_to_fine(len(order)))
+        order = [frame for frame in spread if frame not in missing]
+    for frame in order:
+        try:
+            silhouette = view.silhouette(frame)
+            if look.first is None:
+                look.first = (view.picture(frame), silhouette)
+        except MocapError as error:
+            look.faults.append(error)
+            return
+        look.covers.append(float(silhouette.foreground.mean()))
+        if enough():
+            return
+
+
+def _fault_of(view: View, frame: int) -> Iterator[MocapError]:
+    try:
+        view.source.footage.picture(frame)
+    except MocapError as error:
+        yield error
+
+
+def coarse_to_fine(count: int) -> Iterator[int]:
+    """Each of 0 to ``count`` - 1 once: first, last, then ever finer between them.
+
+    The order is van der Corput's: the bits of a counter, reversed.
+    """
+    last = count - 1
+    yield from range(min(count, 1))
+    if last > 0:
+        yield last
+    bits = max(last, 0).bit_length()
+    for number in range(1, 1 << bits):
+        spread = int(f"{number:0{bits}b}"[::-1], 2)
+        if spread < last:
+            yield spread
+
+
+def _stated_frames(video: Video) -> int:
+    """What the file's head says, which may be wrong; counting means decoding all of it."""
+    return int(cv2.VideoCapture(str(video.path), cv2.CAP_FFMPEG).get(cv2.CAP_PROP_FRAME_COUNT))
+
+
+def _facts(look: _Look, frames: tuple[int, int]) -> FootageFacts:
+    view, footage, covers = look.view, look.view.source.footage, look.covers
+    picture, silhouette = look.first or (None, None)
+    if isinstance(footage, Video):
+        count = _stated_frames(footage)
+        there = (0, count - 1)
+    else:
+        count = len(footage.frames)
+        there = (footage.frames[0], footage.frames[-1])
+    return FootageFacts(
+        camera=footage.camera,
+        place=view.place,
+        is_video=isinstance(footage, Video),
+        is_masks=isinstance(view.source.extractor, ReadyMasks),
+        there=there,
+        count=count,
+        size=footage.size,
+        fps=footage.fps,
+        lossy=footage.lossy,
+        wanted=frames[1] - frames[0] + 1,
+        looked_at=len(covers),
+        empty=sum(cover == 0 for cover in covers),
+        coverage=float(np.mean(covers)) if covers else float("nan"),
+        picture=picture,
+        silhouette=silhouette,
+    )
