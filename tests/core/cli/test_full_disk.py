@@ -1,4 +1,4 @@
-"""A disk that is full in the middle of a fit: told in one line, and mended by space and --resume."""
+"""A full disk in the middle of a fit: told in one line, mended by space and --resume."""
 
 import shutil
 import subprocess
@@ -29,8 +29,9 @@ def test_a_fit_on_a_full_disk_says_so_and_goes_on_when_there_is_space(small_take
     disk, kept = tmp_path / "disk", tmp_path / "kept"
     disk.mkdir()
     kept.mkdir()
+    words = [disk, sys.executable, small_take, kept]
     finished = subprocess.run(
-        ["unshare", "-rm", "sh", "-c", ON_A_SMALL_DISK, "sh", disk, sys.executable, small_take, kept],
+        ["unshare", "-rm", "sh", "-c", ON_A_SMALL_DISK, "sh", *words],
         capture_output=True, text=True,
     )  # fmt: skip
     assert finished.returncode == 0, finished.stderr
