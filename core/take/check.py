@@ -110,7 +110,7 @@ def checked(take: Take, request: CheckRequest) -> TakeCheck:
 
 def _checked_views(take: Take, request: CheckRequest, faults: _Faults) -> TakeCheck:
     views = _opened(take, faults)
-    found = TakeCheck(take, views.frames, _units(take, views), notes=views.notes)
+    found = TakeCheck(take, views.frames, _units(take, views))
     start, silhouettes, performer = 0, (), None
     with faults.noted():
         begin = request.initial_frames(take, views.frames)
@@ -132,6 +132,7 @@ def _checked_views(take: Take, request: CheckRequest, faults: _Faults) -> TakeCh
         footage=footage.cameras,
         performer=performer,
         estimate=estimate,
+        notes=(*views.notes, *footage.notes),
     )
 
 

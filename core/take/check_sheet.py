@@ -59,7 +59,7 @@ def _summary(check: TakeCheck) -> Html:
 
 
 def _figures(check: TakeCheck) -> list[tuple[str, str]]:
-    figures = [(whole(len(check.cameras)), "cameras without a fault")]
+    figures = [(whole(len(check.cameras)), "cameras")]
     if check.frames is not None:
         figures.append((whole(check.frames[1] - check.frames[0] + 1), "frames"))
     figures.append((scale_words(check.cameras), "mm per px at the performer"))
@@ -75,21 +75,20 @@ def _studio(check: TakeCheck) -> Html:
     if not check.cameras:
         return Html()
     studio = Studio(check.cameras, check.opposite, check.performer, check.take.floor)
+    told = facts(
+        [("units", check.units or "unknown"), ("face each other", opposite_words(check.opposite))]
+    )
     drawings = element(
         "div",
         element("figure", plan_from_above(studio), element("figcaption", "From above")),
-        element("figure", view_from_the_side(studio), element("figcaption", "From the side")),
+        element("figure", view_from_the_side(studio), element("figcaption", "From the side"), told),
         class_="plans",
     )
     rows = []
     for view, camera in enumerate(check.cameras):
         name, *rest = camera_words(camera)
         rows.append((_name(name, view), *rest))
-    told = [
-        ("units", check.units or "unknown"),
-        ("face each other", opposite_words(check.opposite)),
-    ]
-    return joined((drawings, table(CAMERA_HEADINGS, rows, words=2), facts(told)))
+    return joined((drawings, table(CAMERA_HEADINGS, rows, words=2)))
 
 
 def _name(name: str, view: int) -> Html:

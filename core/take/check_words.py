@@ -74,12 +74,14 @@ def footage_words(facts: FootageFacts) -> str:
 
 def looked_words(facts: FootageFacts) -> str:
     """How much of the footage was seen, and what it showed."""
-    some = f"{facts.looked_at} of {facts.wanted}"
-    seen = f"all {facts.wanted}" if facts.looked_at == facts.wanted else some
     if not facts.looked_at:
         return "none could be looked at"
+    some = f"{facts.looked_at} of {facts.wanted}"
+    seen = f"all {facts.wanted}" if facts.looked_at == facts.wanted else some
+    made = "" if facts.extracted == facts.looked_at else f", {facts.extracted} as silhouettes"
     nobody = f", {facts.empty} of them without a performer" if facts.empty else ""
-    return f"{seen} looked at{nobody}, {100 * facts.coverage:.1f} % of the picture covered"
+    covered = f", {100 * facts.coverage:.1f} % of the picture covered" if facts.extracted else ""
+    return f"{seen} looked at{made}{nobody}{covered}"
 
 
 def estimate_words(estimate: Estimate) -> Facts:

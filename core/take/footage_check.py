@@ -1,12 +1,12 @@
 """Footage looked at before a fit: every file's presence, and as many pictures as time allows.
 
-Pictures are read, extracted and undistorted just as a fit does it, so that faults show and the time
-is known. Files of a sequence are taken from coarse to fine, first and last one first; a video only
-runs forwards.
+The first pictures become silhouettes just as in a fit, so that faults show and the time is known;
+the others are decoded only. Files of a sequence are taken from coarse to fine, first and last one
+first; a video only runs forwards.
 """
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 
@@ -18,6 +18,8 @@ from ..footage.video import Video
 from ..silhouettes.masks import ReadyMasks
 from ..silhouettes.silhouette import Silhouette
 from .views import View, Views
+
+_EXTRACTING_SHARE = 0.6
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,7 +37,8 @@ class FootageFacts:
         fps: frames per second, where the file says so.
         lossy: whether it was compressed with loss.
         wanted: frames of the take.
-        looked_at: of those, pictures that were read.
+        looked_at: of those, pictures that were decoded.
+        extracted: of those, pictures that were made silhouettes.
         empty: of those, silhouettes without a pixel.
         coverage: mean share of the picture that is silhouette; NaN where none was read.
         picture: (H, W, 3) uint8 BGR, the first at the working size; None where it cannot be read.
@@ -53,6 +56,7 @@ class FootageFacts:
     lossy: bool
     wanted: int
     looked_at: int
+    extracted: int
     empty: int
     coverage: float
     picture: np.ndarray | None
@@ -65,12 +69,14 @@ class FootageCheck:
 
     Attributes:
         cameras: in the order of the views.
-        faults: the first of each camera, and every frame that is missing.
+        faults: of each camera the first missing frame, and the first picture that is at fault.
+        notes: sentences that the user should see.
         seconds: to read one frame of all cameras, as far as known; else NaN.
     """
 
     cameras: tuple[FootageFacts, ...]
     faults: tuple[MocapError, ...]
+    notes: tuple[str, ...]
     seconds: float
 
 
@@ -79,9 +85,19 @@ class _Look:
     """What is found of one camera so far."""
 
     view: View
+    decoded: int = 0
     covers: list[float] = field(default_factory=list)
     faults: list[MocapError] = field(default_factory=list)
     first: tuple[np.ndarray, Silhouette] | None = None
+
+    def extract(self, frame: int) -> None:
+        silhouette = self.view.silhouette(frame)
+        if self.first is None:
+            self.first = (self.view.picture(frame), silhouette)
+        self.covers.append(float(silhouette.foreground.mean()))
+
+    def decode(self, frame: int) -> None:
+        self.view.source.footage.picture(frame)
 
 
 def checked_footage(views: Views, seconds: float) -> FootageCheck:
@@ -89,42 +105,60 @@ def checked_footage(views: Views, seconds: float) -> FootageCheck:
 
     At least one picture of each camera is read.
     """
-    start = time.monotonic()
     looks = [_Look(view) for view in views.views]
+    orders = [_order(look, views.frames) for look in looks]
+    begun = time.monotonic()
+    extracting = begun + seconds * _EXTRACTING_SHARE
 
-    def enough() -> bool:
-        return time.monotonic() - start > seconds
+    def extract(look: _Look, order: Generator[int, None, None]) -> None:
+        _go_on(look, order, look.extract, extracting)
+
+    def decode(look: _Look, order: Generator[int, None, None]) -> None:
+        _go_on(look, order, look.decode, begun + seconds)
 
     with ThreadPoolExecutor(len(looks)) as pool:
-        list(pool.map(lambda look: _look(look, views.frames, enough), looks))
-    read = sum(len(look.covers) for look in looks)
-    spent = time.monotonic() - start
+        list(pool.map(extract, looks, orders))
+        spent = time.monotonic() - begun
+        list(pool.map(decode, looks, orders))
+    extracted = sum(len(look.covers) for look in looks)
+    cameras = tuple(_facts(look, views.frames) for look in looks)
     return FootageCheck(
-        cameras=tuple(_facts(look, views.frames) for look in looks),
+        cameras=cameras,
         faults=tuple(fault for look in looks for fault in look.faults),
-        seconds=len(looks) * spent / read if read else float("nan"),
+        notes=tuple(_short_videos(cameras, views.frames[1])),
+        seconds=len(looks) * spent / extracted if extracted else float("nan"),
     )
 
 
-def _look(look: _Look, frames: tuple[int, int], enough: Callable[[], bool]) -> None:
-    view, footage = look.view, look.view.source.footage
-    order = range(frames[0], frames[1] + 1)
-    if not isinstance(footage, Video):
-        missing = set(order) - set(footage.frames)
-        look.faults.extend(_fault_of(view, min(missing)) if missing else ())
-        spread = (frames[0] + k for k in coarse_to_fine(len(order)))
-        order = [frame for frame in spread if frame not in missing]
+def _go_on(
+    look: _Look, order: Generator[int, None, None], step: Callable[[int], None], deadline: float
+) -> None:
+    """Takes one step per frame of ``order``, at least one, until a fault or the deadline."""
     for frame in order:
         try:
-            silhouette = view.silhouette(frame)
-            if look.first is None:
-                look.first = (view.picture(frame), silhouette)
+            step(frame)
         except MocapError as error:
             look.faults.append(error)
+            # more often than not, what is left has the same fault
+            order.close()
             return
-        look.covers.append(float(silhouette.foreground.mean()))
-        if enough():
+        look.decoded += 1
+        if time.monotonic() > deadline:
             return
+
+
+def _order(look: _Look, frames: tuple[int, int]) -> Generator[int, None, None]:
+    """The frames that exist, as they are to be looked at; the first missing one is a fault."""
+    footage, wanted = look.view.source.footage, range(frames[0], frames[1] + 1)
+    if isinstance(footage, Video):
+        yield from wanted
+        return
+    missing = set(wanted) - set(footage.frames)
+    if missing:
+        look.faults.extend(_fault_of(look.view, min(missing)))
+    for place in coarse_to_fine(len(wanted)):
+        if wanted[place] not in missing:
+            yield wanted[place]
 
 
 def _fault_of(view: View, frame: int) -> Iterator[MocapError]:
@@ -148,6 +182,16 @@ def coarse_to_fine(count: int) -> Iterator[int]:
         spread = int(f"{number:0{bits}b}"[::-1], 2)
         if spread < last:
             yield spread
+
+
+def _short_videos(cameras: Sequence[FootageFacts], last: int) -> Iterator[str]:
+    """Of videos that were not decoded to their end, what their heads make fear."""
+    for facts in cameras:
+        if facts.is_video and facts.looked_at < facts.wanted and facts.there[1] < last:
+            yield (
+                f"camera {facts.camera}: the video says that it holds {facts.count} frames, the "
+                f"take goes to frame {last}"
+            )
 
 
 def _stated_frames(video: Video) -> int:
@@ -175,7 +219,8 @@ def _facts(look: _Look, frames: tuple[int, int]) -> FootageFacts:
         fps=footage.fps,
         lossy=footage.lossy,
         wanted=frames[1] - frames[0] + 1,
-        looked_at=len(covers),
+        looked_at=look.decoded,
+        extracted=len(covers),
         empty=sum(cover == 0 for cover in covers),
         coverage=float(np.mean(covers)) if covers else float("nan"),
         picture=picture,

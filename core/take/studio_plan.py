@@ -18,7 +18,7 @@ from .camera_facts import CameraFacts, Performer
 _SIDE = 560.0
 _LEAST_HEIGHT, _MARGIN_M = 220.0, 0.9
 _DEPTH_M, _SHOULDERS_M = 2.5, 0.25
-_LETTER_PX, _LINE_PX = 7.2, 15.0
+_LETTER_PX, _LINE_PX = 8.3, 15.0
 
 
 @dataclass(frozen=True, eq=False)
