@@ -1,7 +1,6 @@
 """``fit``: from a take to a motion and its files."""
 
 import argparse
-import math
 from dataclasses import replace
 from pathlib import Path
 
@@ -19,6 +18,7 @@ from .arguments import (
 )
 from .console import say
 from .interrupts import shielded
+from .numbers import shown
 
 EXAMPLE = "silhouette-mocap fit sample_scenes/walk/take.toml --out out/walk --export blend,bvh"
 _DONE, _LOST = 0, 3
@@ -81,13 +81,14 @@ def _sum_up(result: FitResult) -> None:
         sum(report[f"{name}_per_frame"]) / frames for name in ("seconds", "evaluations")
     )
     say(
-        f"{frames} frames, IoU {report['iou']:.3f}, contour {report['contour_px']:.2f} px, "
+        f"{frames} frames, IoU {shown(report['iou'], 3)}, "
+        f"contour {shown(report['contour_px'], 2)} px, "
         f"{seconds:.2f} s and {evaluations:.0f} evaluations per frame"
     )
     error = report["error_mm"]
     if error:
         mean = error["offset_removed"]["mean"]
-        removed = f"{mean:.1f} mm after removing constant offsets"
-        if math.isnan(mean):
+        removed = f"{shown(mean)} mm after removing constant offsets"
+        if mean is None:
             removed = "too few frames to remove constant offsets"
-        say(f"error to the truth: {error['absolute']['mean']:.1f} mm, {removed}")
+        say(f"error to the truth: {shown(error['absolute']['mean'])} mm, {removed}")

@@ -1,7 +1,6 @@
 """``score``: the error of a motion against a reference."""
 
 import argparse
-import math
 from pathlib import Path
 
 from ..motion.export_request import Exporter
@@ -10,6 +9,7 @@ from ..motion.report import write_report
 from ..motion.scoring import Score, Spread, aligned_in_time, aligned_rigidly, score
 from .arguments import frame_range
 from .console import say
+from .numbers import shown
 
 EXAMPLE = "silhouette-mocap score out/walk/motion.npz sample_scenes/walk/truth.npz"
 
@@ -70,21 +70,16 @@ def _print(result: Score) -> None:
         (f"offsets removed ({space} space)", result.offset_removed),
     ):
         say(f"  {name:<32}{_row(spread)}")
-    judged = _shown(result.offset_frames_absolute)
+    judged = shown(result.offset_frames_absolute)
     say(f"  absolute on the frames that offset removal judges: {judged}")
     say(
         f"limbs lost {result.limb_losses} times, in {result.frames_with_a_lost_limb} frames; "
-        f"jitter {_shown(result.jitter, 2)} mm/frame²"
+        f"jitter {shown(result.jitter, 2)} mm/frame²"
     )
     for name, point in result.points.items():
-        say(f"  {name:<32}{_row(point.error)}  offset removed {_shown(point.offset_removed)}")
+        say(f"  {name:<32}{_row(point.error)}  offset removed {shown(point.offset_removed)}")
 
 
 def _row(spread: Spread) -> str:
     values = (spread.mean, spread.median, spread.p95, spread.max)
-    return "".join(f"{_shown(value):>8}" for value in values)
-
-
-def _shown(value: float, digits: int = 1) -> str:
-    """The number, or a dash where there are too few frames to have it."""
-    return f"{value:.{digits}f}" if math.isfinite(value) else "-"
+    return "".join(f"{shown(value):>8}" for value in values)

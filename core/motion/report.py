@@ -48,15 +48,20 @@ def versions() -> dict[str, str]:
     }
 
 
-def write_report(path: Path, report: dict) -> None:
-    """Writes ``report`` as JSON, whole or not at all; what is not finite becomes null.
+def write_report(path: Path, report: dict) -> dict:
+    """Writes ``report`` as JSON, whole or not at all.
+
+    Returns:
+        It as it reads back: lists for arrays and tuples, None for what is not finite.
 
     Raises:
         MocapError: the file cannot be written.
     """
-    text = json.dumps(_plain(report), indent=1, allow_nan=False) + "\n"
+    plain = {key: _plain(value) for key, value in report.items()}
+    text = json.dumps(plain, indent=1, allow_nan=False) + "\n"
     with whole_file(path) as partial:
         partial.write_text(text, "utf-8")
+    return plain
 
 
 def _plain(value):

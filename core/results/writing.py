@@ -102,7 +102,7 @@ def write_results(outcome: Outcome, folder: Path, progress: Progress) -> FitResu
         "notes": notes,
         "inputs": {**start.inputs, **stamp_digests(motion.camera_names, *outcome.journal.stamps())},
     }
-    write_report(files[2], report)
+    report = write_report(files[2], report)
     write_report_page(files[3], motion, report, outcome.journal.read_picture)
     return FitResult(motion, report, files)
 

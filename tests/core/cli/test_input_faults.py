@@ -73,3 +73,11 @@ def test_a_damaged_truth_is_told(small_take, tmp_path, fault):
     damaged = tmp_path / "truth.npz"
     damaged.write_bytes(small_take.with_name("truth.npz").read_bytes()[:-100])
     assert str(damaged) in fault("score", damaged, damaged)
+
+
+def test_a_finished_fit_is_told_again_when_resumed(quick_start, small_take, tmp_path, capsys):
+    words = ["fit", str(small_take), "--out", str(tmp_path), "--frames", ":1", "--progress", "none"]
+    assert main(words) == 0
+    first = capsys.readouterr().out
+    assert main([*words, "--resume"]) == 0
+    assert capsys.readouterr().out == first

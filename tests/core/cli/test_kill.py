@@ -1,4 +1,4 @@
-"""A fit that is killed, in processes of their own: ``tests/benchmarks/kills.py`` on a small take."""
+"""A small fit is killed and resumed: ``tests/benchmarks/kills.py`` in short."""
 
 import subprocess
 import sys
