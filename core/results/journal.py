@@ -9,6 +9,7 @@ import json
 import os
 import shutil
 import zlib
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -154,7 +155,7 @@ class Journal:
     def remove(self) -> None:
         """Ends the journal, as its frames have gone into the results."""
         (self.folder / _START).unlink()
-        shutil.rmtree(self.folder, ignore_errors=True)
+        _remove(self.folder)
 
     def _records(self) -> np.ndarray:
         if not self._count:
@@ -187,11 +188,23 @@ def set_aside(out: Path) -> int:
     except MocapError:
         journal = None
     if journal is None or not len(journal):
-        shutil.rmtree(out / UNFINISHED, ignore_errors=True)
+        _remove(out / UNFINISHED)
         return 0
-    shutil.rmtree(out / SET_ASIDE, ignore_errors=True)
-    journal.folder.replace(out / SET_ASIDE)
+    _remove(out / SET_ASIDE)
+    try:
+        journal.folder.replace(out / SET_ASIDE)
+    except OSError as error:
+        raise unwritable(out / SET_ASIDE, error) from error
     return len(journal)
+
+
+def _remove(folder: Path) -> None:
+    """Removes what a journal holds; anything else in ``folder`` is the user's and stays."""
+    shutil.rmtree(folder / _PICTURES, ignore_errors=True)
+    with suppress(OSError):
+        for name in (_START, _BODY, _FRAMES):
+            (folder / name).unlink(missing_ok=True)
+        folder.rmdir()
 
 
 def _record(dofs: int, views: int) -> np.dtype:

@@ -127,3 +127,11 @@ def test_an_empty_journal_replaces_none(tmp_path):
 def test_an_ended_journal_leaves_nothing(tmp_path):
     begun(tmp_path / "j", (1,)).remove()
     assert not (tmp_path / "j").exists()
+
+
+def test_what_is_not_the_journal_s_own_stays(tmp_path):
+    begun(tmp_path / UNFINISHED, (1,))
+    (tmp_path / UNFINISHED / "thesis.txt").write_text("mine", "utf-8")
+    Journal.opened(tmp_path / UNFINISHED).remove()
+    set_aside(tmp_path)
+    assert [path.name for path in (tmp_path / UNFINISHED).iterdir()] == ["thesis.txt"]
