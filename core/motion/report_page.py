@@ -3,6 +3,7 @@
 import json
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from urllib.parse import quote
 
 import numpy as np
 
@@ -195,7 +196,12 @@ def _files(folder: Path) -> Html:
         (path for path in folder.iterdir() if path.is_file() and path.name[0] != "."),
         key=lambda path: path.name,
     )
-    shown = [(path.name, data_size(path.stat().st_size)) for path in found[:_MOST_FILES]]
-    more = len(found) - len(shown)
-    content = facts([(str(folder), ""), *shown]) if shown else Html()
-    return joined((content, paragraphs(f"and {counted(more, 'further file')}") if more else ""))
+    rows = [(_link(path.name), data_size(path.stat().st_size)) for path in found[:_MOST_FILES]]
+    more = len(found) - len(rows)
+    further = paragraphs(f"and {counted(more, 'further file')}") if more else Html()
+    later = "overlay.mp4 and exports in other formats are written after this page."
+    return joined((table((str(folder), "size"), rows), further, element("p", later, class_="soft")))
+
+
+def _link(name: str) -> Html:
+    return element("a", name, href="./" + quote(name, errors="surrogateescape"))

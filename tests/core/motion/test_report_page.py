@@ -124,10 +124,11 @@ def test_the_error_stands_point_by_point_where_there_is_truth(motion, tmp_path):
 
 
 def test_files_beside_the_page_are_listed(motion, tmp_path):
-    (tmp_path / "motion.npz").write_bytes(bytes(2500))
+    (tmp_path / "a #1.npz").write_bytes(bytes(2500))
     (tmp_path / ".hidden").write_bytes(b"")
     text = page_of(motion, tmp_path)
-    assert "motion.npz</th><td>2 KB</td>" in text and ">.hidden<" not in text
+    assert '<a href="./a%20%231.npz">a #1.npz</a></td><td class="number">2 KB</td>' in text
+    assert ">.hidden<" not in text
 
 
 @pytest.mark.parametrize("frames", [1, 2])
