@@ -138,11 +138,10 @@ def _begun(
     first = _first_fit(take, views, start, request)
     for note in first.notes:
         progress.note(note)
-    kept = set_aside(request.out)
-    if kept:
+    if set_aside(request.out):
         progress.note(
-            f"{kept} frames of an unfinished fit are set aside in {request.out / SET_ASIDE}; "
-            "--resume would have gone on with them"
+            f"an unfinished fit is set aside in {request.out / SET_ASIDE}; "
+            "--resume would have gone on with it"
         )
     factors = tuple(view.reduction.factor for view in views.views)
     notes = (*views.notes, *first.notes)

@@ -29,6 +29,7 @@ from .fingerprint import Inputs
 
 UNFINISHED, SET_ASIDE = "unfinished", "unfinished.old"
 _START, _BODY, _FRAMES, _PICTURES = "start.npz", "body.npz", "frames.bin", "pictures"
+_ANEW = "leave out --resume to fit all frames anew"
 _QUALITY = (cv2.IMWRITE_JPEG_QUALITY, 90)
 
 
@@ -63,7 +64,7 @@ class Journal:
         self.folder, self.start = folder, start
         self._kind = _record(len(start.pose), len(start.factors))
         self._file = folder / _FRAMES
-        self._count = self._mended()
+        self._count = self._whole()
 
     @classmethod
     def begun(cls, folder: Path, start: Start) -> "Journal":
@@ -93,14 +94,17 @@ class Journal:
         """
         if not (folder / _START).exists():
             return None
-        stored = read_archive(folder / _START, "start of a fit", "leave out --resume")
-        start = Start(
-            inputs=json.loads(str(stored["inputs"])),
-            factors=tuple(stored["factors"].tolist()),
-            body=read_body(folder / _BODY),
-            pose=stored["pose"],
-            notes=tuple(json.loads(str(stored["notes"]))),
-        )
+        stored = read_archive(folder / _START, "start of a fit", _ANEW)
+        try:
+            start = Start(
+                inputs=json.loads(str(stored["inputs"])),
+                factors=tuple(stored["factors"].tolist()),
+                body=read_body(folder / _BODY),
+                pose=stored["pose"],
+                notes=tuple(json.loads(str(stored["notes"]))),
+            )
+        except (KeyError, ValueError) as error:
+            raise MocapError("is no start of a fit", _ANEW, file=folder / _START) from error
         return cls(folder, start)
 
     def __len__(self) -> int:
@@ -120,8 +124,11 @@ class Journal:
         write_picture(self.picture(fit.frame), picture, _QUALITY)
         record = _packed(fit, stamps, self._kind)
         try:
-            with self._file.open("ab") as stream:
+            with self._file.open("r+b" if self._file.exists() else "wb") as stream:
+                # over what a record cut short has left
+                stream.seek(self._count * self._kind.itemsize)
                 stream.write(record.tobytes())
+                stream.truncate()
                 stream.flush()
                 os.fsync(stream.fileno())
         except OSError as error:
@@ -162,15 +169,14 @@ class Journal:
             return np.zeros(0, self._kind)
         return np.fromfile(self._file, self._kind, self._count)
 
-    def _mended(self) -> int:
-        """How many records at the file's start are whole; what follows them is cut off."""
+    def _whole(self) -> int:
+        """How many records at the file's start are whole."""
         if not self._file.exists():
             return 0
         records = np.fromfile(self._file, self._kind)
         whole = 0
         while whole < len(records) and self._is_whole(records[whole]):
             whole += 1
-        os.truncate(self._file, whole * self._kind.itemsize)
         return whole
 
     def _is_whole(self, record: np.void) -> bool:
@@ -178,24 +184,22 @@ class Journal:
         return sound and self.picture(int(record["frame"])).exists()
 
 
-def set_aside(out: Path) -> int:
-    """Moves a journal in ``out`` away, over one moved before, and returns its frames.
+def set_aside(out: Path) -> bool:
+    """Moves a journal in ``out`` away, over one moved before; one without frames goes.
 
-    One without frames goes.
+    Returns:
+        Whether there was one with frames, of this version or another.
     """
-    try:
-        journal = Journal.opened(out / UNFINISHED)
-    except MocapError:
-        journal = None
-    if journal is None or not len(journal):
+    frames = out / UNFINISHED / _FRAMES
+    if not frames.exists() or not frames.stat().st_size:
         _remove(out / UNFINISHED)
-        return 0
+        return False
     _remove(out / SET_ASIDE)
     try:
-        journal.folder.replace(out / SET_ASIDE)
+        (out / UNFINISHED).replace(out / SET_ASIDE)
     except OSError as error:
         raise unwritable(out / SET_ASIDE, error) from error
-    return len(journal)
+    return True
 
 
 def _remove(folder: Path) -> None:

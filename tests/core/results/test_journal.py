@@ -106,12 +106,15 @@ def test_a_damaged_beginning_is_a_fault(tmp_path):
     (tmp_path / "j" / "start.npz").write_bytes(b"junk")
     with pytest.raises(MocapError, match=r"start\.npz: cannot be read.*leave out --resume"):
         Journal.opened(tmp_path / "j")
+    np.savez(tmp_path / "j" / "start.npz", pose=np.zeros(3))
+    with pytest.raises(MocapError, match=r"start\.npz: is no start of a fit; leave out"):
+        Journal.opened(tmp_path / "j")
 
 
 def test_a_journal_is_set_aside_over_an_older_one(tmp_path):
     for frames in ((1,), (2, 3)):
         begun(tmp_path / UNFINISHED, frames)
-        assert set_aside(tmp_path) == len(frames)
+        assert set_aside(tmp_path)
     assert not (tmp_path / UNFINISHED).exists()
     assert [fit.frame for fit in Journal.opened(tmp_path / SET_ASIDE).fits()] == [2, 3]
 
@@ -120,8 +123,18 @@ def test_an_empty_journal_replaces_none(tmp_path):
     begun(tmp_path / UNFINISHED, (1,))
     set_aside(tmp_path)
     begun(tmp_path / UNFINISHED)
-    assert set_aside(tmp_path) == 0 and not (tmp_path / UNFINISHED).exists()
+    assert not set_aside(tmp_path) and not (tmp_path / UNFINISHED).exists()
     assert len(Journal.opened(tmp_path / SET_ASIDE)) == 1
+
+
+def test_frames_of_another_version_are_neither_cut_nor_thrown_away(tmp_path):
+    begun(tmp_path / UNFINISHED, (1, 2))
+    file = tmp_path / UNFINISHED / "frames.bin"
+    other = file.read_bytes() + b"more in each record"
+    file.write_bytes(other[7:])
+    Journal.opened(tmp_path / UNFINISHED)
+    assert file.read_bytes() == other[7:]
+    assert set_aside(tmp_path) and (tmp_path / SET_ASIDE / "frames.bin").read_bytes() == other[7:]
 
 
 def test_an_ended_journal_leaves_nothing(tmp_path):

@@ -213,8 +213,7 @@ def test_without_resume_the_finished_frames_are_set_aside(take_file, cut_off, tm
     fit(read_take(take_file), asked(out), notes)
     assert notes.frames == [0, 1, 2, 3]
     assert notes.told[0] == (
-        f"2 frames of an unfinished fit are set aside in {out / SET_ASIDE}; "
-        "--resume would have gone on with them"
+        f"an unfinished fit is set aside in {out / SET_ASIDE}; --resume would have gone on with it"
     )
     shutil.rmtree(out / UNFINISHED, ignore_errors=True)
     (out / SET_ASIDE).replace(out / UNFINISHED)
