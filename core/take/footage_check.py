@@ -122,10 +122,11 @@ def checked_footage(views: Views, seconds: float) -> FootageCheck:
         list(pool.map(decode, looks, orders))
     extracted = sum(len(look.covers) for look in looks)
     cameras = tuple(_facts(look, views.frames) for look in looks)
+    sound = [facts for facts, look in zip(cameras, looks, strict=True) if not look.faults]
     return FootageCheck(
         cameras=cameras,
         faults=tuple(fault for look in looks for fault in look.faults),
-        notes=tuple(_short_videos(cameras, views.frames[1])),
+        notes=tuple(_short_videos(sound, views.frames[1])),
         seconds=len(looks) * spent / extracted if extracted else float("nan"),
     )
 
