@@ -24,6 +24,7 @@ READERS: tuple[Reader, ...] = (
     qualisys_qca.READER,
     opencv_yml.READER,
 )
+_MOST_BYTES = 8 * 2**20
 _log = logging.getLogger(__name__)
 METRES_PER_UNIT = {"m": 1.0, "cm": 0.01, "mm": 0.001}
 WIDEST_SPREAD_IN_METRES = 50.0
@@ -157,6 +158,8 @@ def _reader(path: Path, key: str | None) -> Reader:
 
 def _first_bytes(path: Path) -> bytes:
     try:
+        if path.stat().st_size > _MOST_BYTES:
+            raise MocapError("is too large for a calibration", "check the path", file=path)
         content = path.read_bytes()
     except OSError as error:
         raise MocapError(

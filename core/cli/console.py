@@ -4,6 +4,7 @@ A console is the progress that long work is given, and more. All of it goes to t
 of consoles differ in what they show meanwhile.
 """
 
+import io
 import logging
 import sys
 import time
@@ -26,6 +27,8 @@ _log, _shown = logging.getLogger(__name__), logging.getLogger(SHOWN)
 def say(line: str = "") -> None:
     """Writes a line of the result."""
     _shown.info("%s", line)
+    if sys.stdout is None:
+        return
     encoding = sys.stdout.encoding or "utf-8"
     # names of files may hold what a terminal has no letter for
     shown = line.encode(encoding, "backslashreplace").decode(encoding)
@@ -74,7 +77,8 @@ class Console:
     @property
     def stream(self) -> TextIO:
         """Where all but results go."""
-        return sys.stderr if self._stream is None else self._stream
+        # closed streams are None
+        return self._stream or sys.stderr or io.StringIO()
 
     def start(self, command: str | None) -> None:
         """The command that was asked for; None where the words name none."""
@@ -141,6 +145,7 @@ class PlainConsole(Console):
 
     def line(self, text: str) -> None:
         """One line; a bar makes room for it."""
-        with suppress(OSError, ValueError):
-            sys.stdout.flush()
+        if sys.stdout is not None:
+            with suppress(OSError, ValueError):
+                sys.stdout.flush()
         self.write(text + "\n")

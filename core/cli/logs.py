@@ -18,7 +18,7 @@ from .console import SHOWN, Console
 
 PACKAGE = __name__.removesuffix(".core.cli.logs")
 _LOGGERS = (PACKAGE, "py.warnings")
-_OPENCV_WARNINGS = 3
+_STDERR = 2
 _LINE = "%(asctime)s %(levelname)-7s %(name)s: %(message)s"
 _log = logging.getLogger(__name__)
 
@@ -46,10 +46,10 @@ class Log(ExitStack):
         """
         if arguments.verbose:
             self._listen(_Shown(self.console))
-        self.enter_context(_decoders(heard=arguments.log_file is not None))
         if arguments.log_file is not None:
             self._listen(_opened(arguments.log_file))
-            self.enter_context(_native_messages_into(arguments.log_file))
+        if arguments.log_file is not None or not arguments.verbose:
+            self.enter_context(_native_messages_into(arguments.log_file or Path(os.devnull)))
         _log.info("%s", " ".join(argv))
         for fact in _facts() if arguments.log_file is not None else ():
             _log.debug("%s", fact)
@@ -116,35 +116,26 @@ def _facts() -> Iterator[str]:
 
 
 @contextmanager
-def _decoders(heard: bool) -> Iterator[None]:
-    """Within, OpenCV and FFmpeg tell of damaged files only where that is ``heard``."""
-    import cv2  # is loaded by now; --version and --help do without
-
-    before = cv2.getLogLevel()
-    cv2.setLogLevel(_OPENCV_WARNINGS if heard else 0)
-    if not heard:
-        # FFmpeg's "quiet", which OpenCV asks for when the first video is opened
-        os.environ.setdefault("OPENCV_FFMPEG_LOGLEVEL", "-8")
-    try:
-        yield
-    finally:
-        cv2.setLogLevel(before)
-
-
-@contextmanager
 def _native_messages_into(path: Path) -> Iterator[None]:
-    """Within, what native code writes to standard error goes to that file; Python's stays."""
-    own = sys.stderr
-    if own is not sys.__stderr__ or own is None:
+    """Within, what libraries write to standard error goes to that file; Python's stays.
+
+    OpenCV, FFmpeg and libjpeg tell of damaged files there, beside our own line.
+    """
+    try:
+        kept = os.dup(_STDERR)
+    except OSError:
+        # standard error is closed
         yield
         return
-    own.flush()
-    target, kept = own.fileno(), os.dup(own.fileno())
+    own = sys.stderr
     text = {"encoding": own.encoding, "errors": own.errors, "buffering": 1}
-    with open(kept, "w", **text) as sys.stderr, path.open("ab") as log:
-        os.dup2(log.fileno(), target)
+    with open(kept, "w", **text) as stream, path.open("ab") as file:
+        if own is sys.__stderr__:
+            own.flush()
+            sys.stderr = stream
+        os.dup2(file.fileno(), _STDERR)
         try:
             yield
         finally:
-            os.dup2(kept, target)
+            os.dup2(kept, _STDERR)
             sys.stderr = own

@@ -32,6 +32,8 @@ COMMANDS = {
     "score": "measure the error of a motion against a reference, in mm",
     "info": "check everything that fit will meet and say what is missing",
 }
+# OpenCV reads it when it is loaded, by the commands: a damaged file may claim any number of pixels
+os.environ.setdefault("OPENCV_IO_MAX_IMAGE_PIXELS", str(50_000_000))
 _DISK_FAULTS = (errno.ENOSPC, errno.EACCES, errno.EROFS, errno.EDQUOT, errno.EPERM)
 _log = logging.getLogger(__name__)
 
@@ -124,7 +126,8 @@ def _console(progress: str | None) -> Console:
         return JsonConsole()
     if progress == "none":
         return PlainConsole()
-    return BarConsole() if sys.stderr.isatty() else LineConsole()
+    console = BarConsole()
+    return console if console.stream.isatty() else LineConsole()
 
 
 def _named(argv: Sequence[str]) -> str | None:

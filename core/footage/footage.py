@@ -81,7 +81,13 @@ def open_footage(
     Raises:
         MocapError: nothing there, not readable, or a frame of a sequence is missing.
     """
-    footage = _opened(for_camera(pattern, camera), camera, frames)
+    try:
+        footage = _opened(for_camera(pattern, camera), camera, frames)
+    except OSError as error:
+        problem = f"cannot be opened ({error.strerror})"
+        raise MocapError(
+            problem, "check the path", file=for_camera(pattern, camera), camera=camera
+        ) from error
     place, length = for_camera(pattern, camera), ""
     if isinstance(footage, PictureSequence):
         there = footage.frames

@@ -27,6 +27,9 @@ PICTURE_SUFFIXES = (
     ".tga",
 )
 _JPEG_MAGIC = b"\xff\xd8"
+_PNG_MAGIC = b"\x89PNG\r\n\x1a\n"
+_PNG_CHUNK = 12
+"""Bytes of a chunk's length, kind and checksum."""
 
 
 def read_picture(
@@ -57,12 +60,30 @@ def read_picture(
     unchanged = data[:2].tobytes() != _JPEG_MAGIC
     flags = cv2.IMREAD_UNCHANGED if unchanged else cv2.IMREAD_ANYCOLOR | cv2.IMREAD_ANYDEPTH
     with _decoder_silenced():
-        picture = cv2.imdecode(data, flags) if data.size else None
+        try:
+            picture = None if _is_cut_short(data) else cv2.imdecode(data, flags)
+        except cv2.error as error:
+            # OPENCV_IO_MAX_IMAGE_PIXELS, or memory
+            problem = "claims to have more px than can be decoded"
+            raise MocapError(problem, "export it again, smaller", **place) from error
     if picture is None:
         raise MocapError(
             "is no picture that can be decoded, or is cut short", "export it again", **place
         )
     return picture
+
+
+def _is_cut_short(data: np.ndarray) -> bool:
+    """Whether nothing is there, or chunks of a PNG claim more bytes than there are.
+
+    OpenCV would take memory for what they claim.
+    """
+    if not data.size or data[:8].tobytes() != _PNG_MAGIC:
+        return not data.size
+    place = len(_PNG_MAGIC)
+    while place < data.size:
+        place += _PNG_CHUNK + int.from_bytes(data[place : place + 4].tobytes(), "big")
+    return place > data.size
 
 
 def file_stamp(path: Path, camera: str, frame: int) -> tuple[int, int]:

@@ -11,11 +11,11 @@ A TOML file with a table per camera, whose paths are relative to it:
     patches = [{ box = [600, 400, 860, 570], frames = [82, 86] }]   # frames that show it empty
 """
 
-import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 
 from ..errors import MocapError
+from ..toml import read_toml
 
 Box = tuple[int, int, int, int]
 
@@ -56,14 +56,7 @@ def read_plate_recipes(path: Path) -> dict[str, PlateRecipe]:
     Raises:
         MocapError: no such file, not TOML, or an entry that is none of a recipe's.
     """
-    try:
-        tables = tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise MocapError(
-            f"cannot be read ({error.strerror})", "check the path", file=path
-        ) from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise MocapError(f"is not TOML: {error}", file=path) from error
+    tables = read_toml(path)
     return {camera: _recipe(table, path, camera) for camera, table in tables.items()}
 
 

@@ -6,7 +6,6 @@ path counts from the file it is written in.
 
 import logging
 import os
-import tomllib
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -14,6 +13,7 @@ from typing import Any
 from ..body.templates import TEMPLATES
 from ..errors import MocapError
 from ..fitting.hierarchical import SETTINGS
+from ..toml import read_toml
 from .paths import PATH_KEYS, inside
 from .table import Table
 from .take import (
@@ -66,7 +66,7 @@ def _merged(path: Path, root: Path, above: tuple[Path, ...]) -> dict[str, Any]:
     """The tables of ``path`` over those of the file it extends, paths absolute."""
     if path in above:
         raise MocapError("extends itself", 'remove one of the "extends" keys', file=path)
-    values = _read_toml(path)
+    values = read_toml(path)
     table = Table(values, path)
     table.allow(*_TOP)
     for section, keys in PATH_KEYS.items():
@@ -81,21 +81,6 @@ def _merged(path: Path, root: Path, above: tuple[Path, ...]) -> dict[str, Any]:
         return values
     base_path = inside(base, root, path, "extends")
     return _over(_merged(base_path, root, (*above, path)), values)
-
-
-def _read_toml(path: Path) -> dict[str, Any]:
-    try:
-        return tomllib.loads(path.read_text("utf-8"))
-    except FileNotFoundError as error:
-        raise MocapError("no such file", "check the path", file=path) from error
-    except OSError as error:
-        raise MocapError(
-            f"cannot be read ({error.strerror})", "check the file", file=path
-        ) from error
-    except UnicodeDecodeError as error:
-        raise MocapError("is not UTF-8 text", "save it as UTF-8", file=path) from error
-    except tomllib.TOMLDecodeError as error:
-        raise MocapError(f"is not valid TOML ({error})", "mend that line", file=path) from error
 
 
 def _over(base: dict[str, Any], values: dict[str, Any]) -> dict[str, Any]:

@@ -2,6 +2,7 @@
 
 import difflib
 import math
+import sys
 from collections.abc import Collection
 from dataclasses import fields
 from pathlib import Path
@@ -9,6 +10,7 @@ from typing import Any, NoReturn, TypeVar
 
 from ..errors import MocapError
 
+_LONGEST_SHOWN = 200
 Settings = TypeVar("Settings")
 _TYPES = {bool: "true or false", int: "a whole number", float: "a number", str: "a text"}
 
@@ -146,11 +148,13 @@ class Table:
 
 
 def _is_number(value: Any) -> bool:
-    return type(value) in (int, float) and math.isfinite(value)
+    # whole numbers may be too large to be made a float
+    return type(value) in (int, float) and abs(value) <= sys.float_info.max
 
 
 def _shown(value: object) -> str:
     if isinstance(value, dict):
         return "a table"
     kind = _TYPES.get(type(value), "a list" if isinstance(value, list) else type(value).__name__)
-    return f"{kind} ({value!r})"
+    text = repr(value)
+    return f"{kind} ({text if len(text) <= _LONGEST_SHOWN else text[:_LONGEST_SHOWN] + '…'})"

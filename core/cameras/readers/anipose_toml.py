@@ -8,10 +8,9 @@ matrix belongs to the pictures as they are stored.
 """
 
 import re
-import tomllib
 from pathlib import Path
 
-from ...errors import MocapError
+from ...toml import read_toml
 from .file_camera import (
     FileCamera,
     FileContent,
@@ -29,8 +28,8 @@ CAMERA_KEYS = ("size", "matrix", "rotation", "translation")
 
 def recognises(content: bytes) -> bool:
     """Whether there is a table header and at least one key of a camera."""
-    has_table = re.search(rb"^\s*\[[^\[\],]+\]\s*(#.*)?$", content, re.MULTILINE)
-    has_key = re.search(rb"^\s*(matrix|distortions|translation)\s*=", content, re.MULTILINE)
+    has_table = re.search(rb"^[ \t]*\[[^\[\],\n]+\][ \t\r]*(#.*)?$", content, re.MULTILINE)
+    has_key = re.search(rb"^[ \t]*(matrix|distortions|translation)\s*=", content, re.MULTILINE)
     return bool(has_table and has_key)
 
 
@@ -56,14 +55,7 @@ def read(path: Path) -> FileContent:
 
 
 def _camera_tables(path: Path) -> list[tuple[str, dict]]:
-    try:
-        document = tomllib.loads(path.read_text(encoding="utf-8-sig"))
-    except UnicodeDecodeError:
-        raise MocapError("is not UTF-8 text", "re-export the file", file=path) from None
-    except tomllib.TOMLDecodeError as error:
-        raise MocapError(
-            f"is not valid TOML: {error}", "complete or re-export the file", file=path
-        ) from None
+    document = read_toml(path)
     nested = document.get("cameras")
     tables = nested if isinstance(nested, dict) else document
     return [

@@ -15,6 +15,8 @@ import numpy as np
 from ...errors import MocapError
 from ..camera import LENS_COEFFICIENTS
 
+_LARGEST = 1e12
+
 
 @dataclass(frozen=True, eq=False)
 class FileCamera:
@@ -83,17 +85,22 @@ def numbers(value, place: Place) -> np.ndarray:
     """The finite numbers of ``value`` as a float array of any shape.
 
     Raises:
-        MocapError: not numbers, a ragged list, or a number that is not finite.
+        MocapError: not numbers, a ragged list, or a number that is not finite or enormous.
     """
     try:
         array = np.array(value, dtype=float)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise place.fault(
             f"should hold numbers, got {_shortened(value)}", "correct or re-export the file"
         ) from None
     if not np.isfinite(array).all():
         raise place.fault(
             "holds a number that is not finite", "calibrate this camera again or leave it out"
+        )
+    if (np.abs(array) > _LARGEST).any():
+        raise place.fault(
+            "holds a number far too large for a camera",
+            "calibrate this camera again or leave it out",
         )
     return array
 

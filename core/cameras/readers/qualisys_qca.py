@@ -56,7 +56,8 @@ def read(path: Path) -> FileContent:
     """
     try:
         root = ElementTree.fromstring(path.read_bytes())
-    except ElementTree.ParseError as error:
+    except (ElementTree.ParseError, LookupError, ValueError) as error:
+        # the latter two: an encoding that is unknown or cannot be read
         raise MocapError(
             f"is not complete XML ({error})", "export it again from QTM", file=path
         ) from None

@@ -1,7 +1,6 @@
 """What is told on request and kept in a log file, and that nothing else is."""
 
 import logging
-import os
 import subprocess
 import sys
 import warnings
@@ -149,12 +148,20 @@ def damaged_take(small_take, tmp_path):
     return folder / "take.toml"
 
 
-def run_alone(*words) -> subprocess.CompletedProcess:
-    """The command in a process of its own, which inherits no wish about decoders."""
+@pytest.mark.skipif(sys.platform == "win32", reason="a shell of another kind")
+def test_a_command_runs_with_closed_streams(small_take, tmp_path):
     program = "import sys; from silhouette_mocap.core.cli import main; sys.exit(main(sys.argv[1:]))"
-    environment = {name: os.environ[name] for name in os.environ if "OPENCV" not in name}
+    words = [sys.executable, "-c", program, "masks", str(small_take), "--out", str(tmp_path)]
+    closed = ["sh", "-c", '"$@" >&- 2>&-', "sh"]
+    assert subprocess.run([*closed, *words]).returncode == 0
+    assert subprocess.run([*closed, *words, "--without", "nobody"]).returncode == 2
+
+
+def run_alone(*words) -> subprocess.CompletedProcess:
+    """The command in a process of its own."""
+    program = "import sys; from silhouette_mocap.core.cli import main; sys.exit(main(sys.argv[1:]))"
     command = [sys.executable, "-c", program, *map(str, words)]
-    return subprocess.run(command, capture_output=True, text=True, env=environment)
+    return subprocess.run(command, capture_output=True, text=True)
 
 
 def test_decoders_are_heard_in_the_log_file_alone(damaged_take, tmp_path):

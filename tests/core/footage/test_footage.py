@@ -112,6 +112,24 @@ def test_a_damaged_picture_is_told_by_us_alone(tmp_path, suffix, capfd):
     assert cv2.getLogLevel() == level
 
 
+def test_a_png_that_claims_more_bytes_than_there_are_takes_no_memory(tmp_path):
+    path = tmp_path / "0.png"
+    write_picture(path, np.random.default_rng(0).integers(0, 255, (40, 40, 3), np.uint8))
+    whole = bytearray(path.read_bytes())
+    place = whole.index(b"IDAT") - 4
+    path.write_bytes(whole[:place] + b"\x7f\xff\xff\x00" + whole[place + 4 :])
+    tracemalloc.start()
+    with pytest.raises(MocapError, match="cut short"):
+        read_picture(path)
+    assert tracemalloc.get_traced_memory()[1] < 1e6
+    tracemalloc.stop()
+
+
+def test_a_path_too_long_for_any_file_is_named(tmp_path):
+    with pytest.raises(MocapError, match=r"camera left: cannot be opened \(File name too long\)"):
+        open_footage(tmp_path / ("n" * 5000 + ".mp4"), "left")
+
+
 def test_sixteen_bit_and_grey_pictures_become_eight_bit_colour(tmp_path):
     write_picture(tmp_path / "deep.png", np.full((4, 5), 257 * 200, np.uint16))
     picture = read_picture(tmp_path / "deep.png")
