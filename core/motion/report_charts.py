@@ -5,27 +5,33 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..fitting.scores import LIMB_NAMES, limb_of
+from ..pages.axis import value_axis
 from ..pages.chart import Chart, Scale, Series, chart_figure
+from ..pages.heat import Heat, heat_figure
 from ..pages.markup import Html, joined
 from .motion import Motion
 from .worst_frames import mean_iou
 
 # other than the first cameras' colours, lest a limb be taken for a camera
 _LIMB_STYLES = (6, 4, 5, 3, 2)
+_DARKEST_PERCENT = 1.0
 
 
-def motion_charts(motion: Motion, seconds: Sequence[float]) -> Html:
+def motion_charts(motion: Motion, seconds: Sequence[float], flagged: Sequence[int]) -> Html:
     """All charts over the motion's frames.
 
     Args:
         motion: the motion.
         seconds: (T,) time each frame took.
+        flagged: frames that are shown elsewhere on the page.
     """
     frames, lost = motion.frames, motion.lost
     likely = "probability of an error below 50 mm, lowest point of each limb"
     time = [Series("fit", np.array(seconds, float))]
-    charts = (
-        Chart("Agreement", "IoU, 1 is perfect", frames, _iou(motion), lost, Scale(None, 1.0, 3)),
+    agreement = Chart(
+        "Agreement", "IoU, 1 is perfect", frames, _iou(motion), lost, Scale(None, 1.0, 3), flagged
+    )
+    others = (
         Chart("Differing pixels", "XOR px", frames, _xor(motion), lost, Scale(0.0, None, 0)),
         Chart("Confidence", likely, frames, _confidence(motion), lost, Scale(0.0, 1.0)),
         Chart(
@@ -34,7 +40,19 @@ def motion_charts(motion: Motion, seconds: Sequence[float]) -> Html:
         ),
         Chart("Time", "s per frame", frames, time, lost, Scale(0.0)),
     )  # fmt: skip
-    return joined(map(chart_figure, charts))
+    return joined((chart_figure(agreement), _cameras(motion), *map(chart_figure, others)))
+
+
+def _cameras(motion: Motion) -> Html:
+    known = motion.iou[np.isfinite(motion.iou)]
+    # a few lost frames shall not take the contrast from all others
+    ends = np.percentile(known, (_DARKEST_PERCENT, 100)) if len(known) else known
+    return heat_figure(
+        Heat(
+            "Agreement by camera", "lowest IoU of each column's frames", motion.frames,
+            motion.camera_names, motion.iou, value_axis(ends),
+        )
+    )  # fmt: skip
 
 
 def _iou(motion: Motion) -> list[Series]:

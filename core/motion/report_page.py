@@ -1,7 +1,7 @@
 """report.html: how well a fit went, for people, in one file that opens offline."""
 
 import json
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from urllib.parse import quote
 
@@ -36,10 +36,10 @@ def write_report_page(
     Raises:
         MocapError: it cannot be written.
     """
-    judged = verdict(motion, report)
+    judged, worst = verdict(motion, report), worst_frames(motion, _PICTURES)
     sections = (
-        Section("worst", "Worst frames", _worst(motion, picture)),
-        Section("plots", "Frame by frame", _plots(motion, report)),
+        Section("worst", "Worst frames", _worst(worst, picture)),
+        Section("plots", "Frame by frame", _plots(motion, report, [bad.frame for bad in worst])),
         Section("cameras", "Cameras", _cameras(motion, report)),
         Section("error", "Error against the truth", _error(report)),
         Section("notes", "Notes", bullets(report["notes"])),
@@ -66,12 +66,12 @@ def _summary(judged: Verdict, motion: Motion, report: dict) -> Html:
     return joined((element("p", badge, judged.sentence, class_="verdict"), tiles(figures)))
 
 
-def _worst(motion: Motion, picture: Callable[[int], bytes | None]) -> Html:
+def _worst(worst: Sequence[BadFrame], picture: Callable[[int], bytes | None]) -> Html:
     explained = element(
         "p", *_colour("observed and model agree", BOTH), *_colour("model only", MODEL_ONLY),
         *_colour("performer only", OBSERVED_ONLY), class_="soft",
     )  # fmt: skip
-    shown = (_bad_frame(bad, picture) for bad in worst_frames(motion, _PICTURES))
+    shown = (_bad_frame(bad, picture) for bad in worst)
     return joined((explained, element("div", *shown, class_="pictures")))
 
 
@@ -88,7 +88,7 @@ def _bad_frame(bad: BadFrame, picture: Callable[[int], bytes | None]) -> Html:
     )
     lost = (" ", element("span", "lost", class_="badge bad")) if bad.lost else ()
     caption = element("figcaption", element("b", title, *lost), "; ".join(_reasons(bad)))
-    return element("figure", image, caption)
+    return element("figure", image, caption, id=f"frame-{bad.frame}")
 
 
 def _reasons(bad: BadFrame) -> Iterator[str]:
@@ -104,17 +104,14 @@ def _reasons(bad: BadFrame) -> Iterator[str]:
         yield f"nobody observed by {', '.join(bad.unseen)}"
 
 
-def _plots(motion: Motion, report: dict) -> Html:
-    note = "Under the mouse: the values at that frame. Else each legend gives the mean."
+def _plots(motion: Motion, report: dict, flagged: Sequence[int]) -> Html:
+    note = "Under the mouse: the values at that frame. Else each legend gives the mean. "
+    note += "Flags lead to the pictures above."
     lost = int(motion.lost.sum())
     if lost:
         note += f" Shaded: {counted(lost, 'lost frame')}."
-    return joined(
-        (
-            element("p", note, class_="soft"),
-            motion_charts(motion, report["seconds_per_frame"]),
-        )
-    )
+    charts = motion_charts(motion, report["seconds_per_frame"], flagged)
+    return joined((element("p", note, class_="soft"), charts))
 
 
 def _cameras(motion: Motion, report: dict) -> Html:

@@ -71,6 +71,7 @@ class Chart:
         series: in the order of the legend; the last is drawn on top.
         marked: (T,) bool, frames with a band behind.
         scale: of the values.
+        flagged: frames with a flag that leads to the element called ``frame-NUMBER``.
     """
 
     title: str
@@ -79,6 +80,7 @@ class Chart:
     series: Sequence[Series]
     marked: np.ndarray
     scale: Scale = Scale()
+    flagged: Sequence[int] = ()
 
 
 def chart_figure(chart: Chart) -> Html:
@@ -93,16 +95,22 @@ def chart_figure(chart: Chart) -> Html:
         viewBox=f"0 0 {WIDTH} {HEIGHT}", preserveAspectRatio="none", role="img",
         aria_label=f"{chart.title} ({chart.unit}) over frames",
     )  # fmt: skip
-    caption = element("figcaption", element("b", chart.title), " ", element("i", chart.unit))
+    around = (*_value_marks(y), *frame_marks(x), *_flags(chart, x))
     return element(
-        "figure", caption, element("div", plot, *_marks(x, y), class_=_plot_class(chart)),
-        _legend(chart), class_="chart", data_digits=chart.scale.digits,
-        data_first=x.low, data_last=x.high, data_low=y.low, data_high=y.high,
+        "figure", caption(chart.title, chart.unit),
+        element("div", plot, *around, class_=_plot_class(chart)), _legend(chart),
+        class_="chart", data_digits=chart.scale.digits, data_first=x.low, data_last=x.high,
+        data_low=y.low, data_high=y.high,
     )  # fmt: skip
 
 
 def _plot_class(chart: Chart) -> str:
     return "plot dense" if len(chart.frames) > WIDTH else "plot"
+
+
+def caption(title: str, unit: str) -> Html:
+    """What a figure shows, and in which unit."""
+    return element("figcaption", element("b", title), " ", element("i", unit))
 
 
 def _values_axis(chart: Chart) -> Axis:
@@ -149,17 +157,32 @@ def _grid(y: Axis) -> Html:
     )
 
 
-def _marks(x: Axis, y: Axis) -> list[Html]:
-    rows = [
+def _value_marks(y: Axis) -> list[Html]:
+    return [
         element("span", y.label(mark), class_="y", style=f"top:{100 - 100 * share:.2f}%")
         for mark, share in zip(y.marks, y.shares(np.array(y.marks)), strict=True)
     ]
+
+
+def frame_marks(x: Axis) -> list[Html]:
+    """Frame numbers below a plot."""
     frames = np.array([mark for mark in x.marks if mark == round(mark)])
-    columns = [
+    marks = [
         element("span", str(round(frame)), class_="x", style=f"left:{100 * share:.2f}%")
         for frame, share in zip(frames, x.shares(frames), strict=True)
     ]
-    return [*rows, *columns, element("span", "frame", class_="x unit")]
+    return [*marks, element("span", "frame", class_="x unit")]
+
+
+def _flags(chart: Chart, x: Axis) -> list[Html]:
+    shares = x.shares(np.array(chart.flagged, float))
+    return [
+        element(
+            "a", "▾", class_="flag", href=f"#frame-{frame}", title=f"frame {frame}",
+            style=f"left:{100 * share:.2f}%",
+        )
+        for frame, share in zip(chart.flagged, shares, strict=True)
+    ]  # fmt: skip
 
 
 def _legend(chart: Chart) -> Html:

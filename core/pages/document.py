@@ -6,6 +6,9 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
+import cv2
+import numpy as np
+
 from ..files import whole_file
 from .markup import Html, element, joined
 
@@ -96,8 +99,17 @@ def tiles(values: Sequence[tuple[str, str]]) -> Html:
 
 def jpeg_picture(data: bytes, description: str) -> Html:
     """A JPEG picture inside the page."""
-    source = "data:image/jpeg;base64," + base64.b64encode(data).decode("ascii")
-    return element("img", src=source, alt=description, loading="lazy")
+    return _picture("image/jpeg", data, description)
+
+
+def png_picture(picture: np.ndarray, description: str) -> Html:
+    """A (H, W, 4) uint8 BGRA picture inside the page."""
+    return _picture("image/png", cv2.imencode(".png", picture)[1].tobytes(), description)
+
+
+def _picture(kind: str, data: bytes, description: str) -> Html:
+    source = f"data:{kind};base64," + base64.b64encode(data).decode("ascii")
+    return element("img", src=source, alt=description)
 
 
 def bullets(lines: Sequence[str], class_: str | None = None) -> Html:

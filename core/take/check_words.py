@@ -95,7 +95,7 @@ def estimate_words(estimate: Estimate) -> Facts:
     total = data_size(sum(estimate.results_bytes.values()))
     return [
         ("time", f"about {duration(estimate.total_s)} on this machine: {frame}"),
-        ("memory", f"about {data_size(estimate.memory_bytes)}, however many frames"),
+        ("memory", f"about {data_size(estimate.memory_bytes)}"),
         ("disk", f"about {data_size(estimate.meanwhile_bytes)} during the fit, {total} after"),
         ("files", files),
     ]

@@ -85,9 +85,19 @@ def test_the_worst_frame_comes_first_with_its_picture_and_reason(motion, tmp_pat
     )
 
 
+def test_flags_lead_from_the_chart_to_the_pictures(motion, tmp_path):
+    text = page_of(motion, tmp_path)
+    flags = re.findall(
+        r'<a class="flag" href="#(frame-\d+)" title="[^"]+" style="left:([\d.]+)%', text
+    )
+    assert len(flags) == 6 and all(f'<figure id="{name}">' in text for name, _ in flags)
+    lefts = dict(flags)
+    assert float(lefts["frame-120"]) == pytest.approx(100 * 20 / 59, abs=0.01)
+
+
 def test_a_picture_that_is_gone_is_left_out(motion, tmp_path):
     text = page_of(motion, tmp_path, picture=lambda frame: None)
-    assert "<img" not in text and "Frame 120" in text
+    assert "image/jpeg" not in text and "Frame 120" in text
 
 
 def test_names_and_notes_are_escaped(motion, tmp_path):
