@@ -26,6 +26,8 @@ def test_zero_has_no_sign():
 def test_a_value_axis_ends_at_round_values_and_holds_all():
     axis = value_axis(np.array([0.813, np.nan, 0.901]), high=1.0)
     assert (axis.low, axis.high) == (0.8, 1.0)
+    axis = value_axis(np.array([0.813, 0.951]))
+    np.testing.assert_allclose([axis.low, axis.high], [0.8, 1.0])
 
 
 @pytest.mark.parametrize("values", [[], [np.nan], [5.0], [0.0, 0.0]])
