@@ -9,7 +9,7 @@ KERNEL := $(wildcard core/native/build.py core/native/*.c core/native/*.h)
 CORE_TESTS := tests/core tests/test_layers.py
 PROTOTYPES ?= $(wildcard ../shared/prototypes)
 
-.PHONY: help env demo demo-real test lint test-core test-addon bench blender clean
+.PHONY: help env demo demo-real test lint test-core test-addon bench fuzz long-take blender clean
 
 help: ## This list
 	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /make \1\t/' | expand -t 18
@@ -59,6 +59,9 @@ ifneq ($(PROTOTYPES),)
 	@.venv/bin/python -c 'import numba' 2>/dev/null || .venv/bin/python -m pip install -q numba==0.61.2
 endif
 	@.venv/bin/python tests/benchmarks/energy.py $(addprefix --prototypes ,$(PROTOTYPES))
+
+fuzz: .venv/.ready ## 10,000 damaged takes, calibrations and masks through a real command
+	@cd tests && ../.venv/bin/python -m benchmarks.fuzz --cases 10000
 
 blender: .venv/.ready .venv-3.13/.installed ## A real Blender 5.2, cached outside the tree (needs root and a Debian-like machine)
 	@.ci/blender

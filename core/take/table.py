@@ -2,7 +2,6 @@
 
 import difflib
 import math
-import sys
 from collections.abc import Collection
 from dataclasses import fields
 from pathlib import Path
@@ -148,8 +147,7 @@ class Table:
 
 
 def _is_number(value: Any) -> bool:
-    # whole numbers may be too large to be made a float
-    return type(value) in (int, float) and abs(value) <= sys.float_info.max
+    return type(value) in (int, float) and math.isfinite(value)
 
 
 def _shown(value: object) -> str:

@@ -5,10 +5,11 @@
 Each case damages one file of a small take (its take.toml, its calibration in each format, a mask
 of each format) and runs ``masks``, which reads all of the take. It must answer with 0, or with 2
 and one line, without a word from libraries, within a second and 500 MB. The cases run in child
-processes under a limit of memory; a child that dies is a failure of the case it was at.
+processes under a limit of memory and time; a child that dies is a failure of the case it was at.
 """
 
 import argparse
+import faulthandler
 import json
 import random
 import subprocess
@@ -25,6 +26,7 @@ from benchmarks.fuzz_takes import KINDS, Target, write_takes
 
 MOST_SECONDS, MOST_MB = 1.0, 500.0
 MOST_LETTERS = 2000
+LONGEST_SECONDS = 20
 LIMIT_MB = 4000
 PROCESSES = 2
 
@@ -97,11 +99,13 @@ def work(seed: int, first: int, last: int, step: int) -> None:
             target, mutation, data = case_of(seed, index, folder)
             whole = target.file.read_bytes()
             target.file.write_bytes(data)
+            faulthandler.dump_traceback_later(LONGEST_SECONDS, exit=True, file=sys.__stderr__)
             found = answer(target.take, folder / "masks")
             if found.seconds > MOST_SECONDS:
                 # the machine may have been busy; what is slow is slow twice
                 again = answer(target.take, folder / "masks")
                 found = min(found, again, key=lambda answer: answer.seconds)
+            faulthandler.cancel_dump_traceback_later()
             target.file.write_bytes(whole)
             print(json.dumps(asdict(Case(index, target.kind, mutation, *found))), flush=True)
 

@@ -73,6 +73,7 @@ KINDS = {
     "toml": Kind(("calibration.toml",), mutations.TEXT),
     "qca": Kind(("camera.qca.txt",), mutations.XML, "camera.qca.txt"),
     "yml": Kind(("intri.yml", "extri.yml"), mutations.TEXT, "intri.yml"),
+    "xml": Kind(("intri.xml", "extri.xml"), mutations.XML, "intri.xml"),
     "png": _masks(".png", mutations.PNG),
     "jpeg": _masks(".jpg", mutations.PICTURE),
     "tiff": _masks(".tif", mutations.PICTURE),
@@ -117,9 +118,9 @@ def _write_toml(folder: Path, cameras: tuple[Camera, ...]) -> None:
     (folder / "calibration.toml").write_text(text, "utf-8")
 
 
-def _write_opencv(folder: Path, cameras: tuple[Camera, ...]) -> None:
-    lenses = cv2.FileStorage(str(folder / "intri.yml"), cv2.FileStorage_WRITE)
-    places = cv2.FileStorage(str(folder / "extri.yml"), cv2.FileStorage_WRITE)
+def _write_opencv(folder: Path, cameras: tuple[Camera, ...], suffix: str = ".yml") -> None:
+    lenses = cv2.FileStorage(str(folder / f"intri{suffix}"), cv2.FileStorage_WRITE)
+    places = cv2.FileStorage(str(folder / f"extri{suffix}"), cv2.FileStorage_WRITE)
     for storage in (lenses, places):
         storage.startWriteStruct("names", cv2.FileNode_SEQ)
         for name in CAMERAS:
@@ -163,4 +164,5 @@ _CALIBRATIONS: dict[str, Callable[[Path, tuple[Camera, ...]], None]] = {
     "calibration.toml": _write_toml,
     "camera.qca.txt": _write_qualisys,
     "intri.yml": _write_opencv,
+    "intri.xml": lambda folder, cameras: _write_opencv(folder, cameras, ".xml"),
 }

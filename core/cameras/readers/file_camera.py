@@ -89,7 +89,7 @@ def numbers(value, place: Place) -> np.ndarray:
     """
     try:
         array = np.array(value, dtype=float)
-    except (TypeError, ValueError, OverflowError):
+    except (TypeError, ValueError):
         raise place.fault(
             f"should hold numbers, got {_shortened(value)}", "correct or re-export the file"
         ) from None

@@ -6,6 +6,7 @@ have a ``K_n``: the list ``names`` may be absent or padded with "none". Files of
 one file that holds both halves are read alike.
 """
 
+import re
 from pathlib import Path
 
 import cv2
@@ -112,8 +113,9 @@ def _pair(path: Path) -> tuple[Path, Path]:
 def _nodes(path: Path) -> dict[str, np.ndarray | list[str] | float]:
     """Matrices, lists of strings and numbers of a file by key."""
     try:
-        flags = cv2.FileStorage_READ | cv2.FileStorage_MEMORY
-        storage = cv2.FileStorage(path.read_text(encoding="utf-8-sig"), flags)
+        text = path.read_text(encoding="utf-8-sig")
+        _check_one_document(text, path)
+        storage = cv2.FileStorage(text, cv2.FileStorage_READ | cv2.FileStorage_MEMORY)
         root = storage.root()
         return {key: _value(root.getNode(key)) for key in root.keys()}  # noqa: SIM118
     except (cv2.error, SystemError, UnicodeDecodeError, OSError) as error:
@@ -122,6 +124,16 @@ def _nodes(path: Path) -> dict[str, np.ndarray | list[str] | float]:
         raise MocapError(
             f"OpenCV cannot read it ({reason})", "complete the file or write it again", file=path
         ) from None
+
+
+def _check_one_document(text: str, path: Path) -> None:
+    """Refuses YAML with several documents, in which OpenCV may search for keys without end."""
+    before, *after = re.split("^---", text, flags=re.MULTILINE)
+    if len(after) > 1 or (after and re.search(r"^[^%#\s]|^[ \t]+[^\s#]", before, re.MULTILINE)):
+        raise MocapError(
+            'has more than "---" between its first line and the cameras', "write the file again",
+            file=path,
+        )  # fmt: skip
 
 
 def _value(node: cv2.FileNode):

@@ -112,17 +112,16 @@ def test_a_damaged_picture_is_told_by_us_alone(tmp_path, suffix, capfd):
     assert cv2.getLogLevel() == level
 
 
-def test_a_png_that_claims_more_bytes_than_there_are_takes_no_memory(tmp_path):
+def test_a_png_that_claims_more_bytes_than_there_are_is_not_decoded(tmp_path, monkeypatch):
     path = tmp_path / "0.png"
     write_picture(path, np.random.default_rng(0).integers(0, 255, (40, 40, 3), np.uint8))
     whole = bytearray(path.read_bytes())
     place = whole.index(b"IDAT") - 4
     path.write_bytes(whole[:place] + b"\x7f\xff\xff\x00" + whole[place + 4 :])
-    tracemalloc.start()
+    # OpenCV 4.11 would take 2 GB
+    monkeypatch.setattr("cv2.imdecode", None)
     with pytest.raises(MocapError, match="cut short"):
         read_picture(path)
-    assert tracemalloc.get_traced_memory()[1] < 1e6
-    tracemalloc.stop()
 
 
 def test_a_path_too_long_for_any_file_is_named(tmp_path):
