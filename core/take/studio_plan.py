@@ -16,7 +16,8 @@ from ..pages.markup import Html, element
 from .camera_facts import CameraFacts, Performer
 
 _SIDE = 560.0
-_LEAST_HEIGHT, _MARGIN_M = 220.0, 0.9
+_LEAST_HEIGHT = 220.0
+_LEAST_MARGIN_M, _MARGIN_SHARE = 0.9, 0.16
 _DEPTH_M, _SHOULDERS_M = 2.5, 0.25
 _LETTER_PX, _LINE_PX = 8.3, 15.0
 
@@ -63,7 +64,11 @@ class Sheet:
     def around(cls, points: np.ndarray, axes: np.ndarray) -> "Sheet":
         """The sheet that holds world points (N, 3) with a margin."""
         flat = points @ axes.T
-        low, high = flat.min(axis=0) - _MARGIN_M, flat.max(axis=0) + _MARGIN_M
+        low, high = flat.min(axis=0), flat.max(axis=0)
+        # names stand to the left and right of cameras, not above
+        side = max(_LEAST_MARGIN_M, _MARGIN_SHARE * float((high - low).max()))
+        margin = np.array([side, _LEAST_MARGIN_M])
+        low, high = low - margin, high + margin
         scale = _SIDE / float((high - low).max())
         size = np.array([_SIDE, max(_LEAST_HEIGHT, scale * (high[1] - low[1]))])
         low = (low + high) / 2 - size / scale / 2
