@@ -19,7 +19,7 @@ from .files import made_folder
 from .fitting.hierarchical import SETTINGS, HierarchicalTracker
 from .fitting.tracking import FrameFit, track
 from .initialisation.first_pose import FirstFit, PoseRequest, initialised
-from .initialisation.plausibility import check_first_fit
+from .initialisation.plausibility import check_first_fit, check_height
 from .motion.overlay import Tile, overlay_picture
 from .progress import FrameFigures, Progress
 from .rendering.native import NativeEvaluator
@@ -36,6 +36,7 @@ from .results.writing import (
     write_results,
 )
 from .silhouettes.silhouette import Silhouette
+from .take.first_look import check_first_look
 from .take.take import Search, Take
 from .take.views import Views, open_views
 
@@ -134,8 +135,12 @@ def _begun(
     views = views.reduced(start)
     for note in views.notes:
         progress.note(note)
+    seen = {frame: views.silhouettes(frame) for frame in start}
+    looks = check_first_look(take, views, seen)
+    for note in looks:
+        progress.note(note)
     progress.begin("first pose", 1)
-    first = _first_fit(take, views, start, request)
+    first = _first_fit(take, views, tuple(seen.values()), request)
     for note in first.notes:
         progress.note(note)
     if set_aside(request.out):
@@ -144,7 +149,7 @@ def _begun(
             "--resume would have gone on with it"
         )
     factors = tuple(view.reduction.factor for view in views.views)
-    notes = (*views.notes, *first.notes)
+    notes = (*views.notes, *looks, *first.notes)
     return Journal.begun(
         request.out / UNFINISHED, Start(inputs, factors, first.body, first.pose, notes)
     )
@@ -197,17 +202,20 @@ def initial_frames(take: Take, frames: tuple[int, int]) -> tuple[int, ...]:
     return tuple(int(f) for f in np.linspace(begin, end, count).round())
 
 
-def _first_fit(take: Take, views: Views, start: Sequence[int], request: FitRequest) -> FirstFit:
+def _first_fit(
+    take: Take, views: Views, seen: tuple[Silhouettes, ...], request: FitRequest
+) -> FirstFit:
     body, height = take.performer.body, take.performer.height_m
     if isinstance(body, Path):
-        body = read_body(body)
+        file, body = body, read_body(body)
         height = height or rest_height(body)
+        check_height(height, file)
     else:
         body = template(body)
     first = initialised(
         body,
         views.cameras,
-        tuple(views.silhouettes(frame) for frame in start),
+        seen,
         PoseRequest(take.initial_pose.kind, height, take.floor),
         EVALUATORS[request.evaluator],
     )

@@ -7,9 +7,11 @@ from typing import Any
 
 from .errors import MocapError
 
+POINTS_NOT_COMMAS = "numbers need decimal points, not commas"
 MOST_BYTES = 2**20
 """Beyond any take or calibration; what is larger is another file by mistake."""
 _LONGEST_LINE = 10_000
+_DECIMAL_COMMA = re.compile(r"^[^#\"'\n]*=[ \t]*[-+]?\d+,\d+[ \t\r]*(#.*)?$", re.MULTILINE)
 # Python takes long to read one, and refuses to show it
 _ENDLESS_NUMBER = re.compile(r"\d[0-9a-fA-FxX_]{300}")
 
@@ -29,7 +31,10 @@ def read_toml(path: Path) -> dict[str, Any]:
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        raise MocapError(f"is not valid TOML ({error})", "mend that line", file=path) from error
+        comma = f"; {POINTS_NOT_COMMAS}" if _DECIMAL_COMMA.search(text) else ""
+        raise MocapError(
+            f"is not valid TOML ({error})", f"mend that line{comma}", file=path
+        ) from error
     except RecursionError as error:
         problem = "has brackets in brackets without end"
         raise MocapError(problem, "mend those brackets", file=path) from error
@@ -44,6 +49,8 @@ def _text(path: Path) -> str:
         return path.read_text("utf-8-sig")
     except FileNotFoundError as error:
         raise MocapError("no such file", "check the path", file=path) from error
+    except IsADirectoryError as error:
+        raise MocapError("is a folder", "name the .toml file in it", file=path) from error
     except OSError as error:
         problem = f"cannot be read ({error.strerror})"
         raise MocapError(problem, "check the file", file=path) from error

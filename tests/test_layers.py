@@ -10,8 +10,8 @@ ROOT = Path(__file__).resolve().parents[1]
 # a package of core imports only itself and earlier ones
 ORDER = (
     "errors", "files", "toml", "progress", "geometry", "pages", "cameras", "footage",
-    "silhouettes", "body", "native", "energy", "rendering", "optimisers", "particles", "fitting", "initialisation",
-    "motion", "take", "results", "distributed", "pipeline", "cli",
+    "silhouettes", "body", "native", "energy", "rendering", "optimisers", "particles", "fitting",
+    "initialisation", "motion", "take", "results", "distributed", "pipeline", "cli",
 )  # fmt: skip
 BLENDER = frozenset(("bpy", "bmesh", "mathutils", "gpu", "bl_ui", "bpy_extras", "addon_utils"))
 

@@ -7,6 +7,7 @@ intrinsic matrix: the lens acts before it, on rays, and stays as calibrated.
 """
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 
@@ -49,10 +50,11 @@ def observed_pixels(
     return inside[1][:, None] & inside[0]
 
 
-def matched_to_footage(camera: Camera, size: tuple[int, int]) -> Camera:
+def matched_to_footage(camera: Camera, size: tuple[int, int], file: str | Path) -> Camera:
     """The camera of footage of ``size`` (width, height): itself, or resized if the aspect agrees.
 
-    Sizes agree in aspect where one is the other times a factor, rounded to whole pixels.
+    Sizes agree in aspect where one is the other times a factor, rounded to whole pixels. ``file``
+    is the footage, for the message.
 
     Raises:
         MocapError: another aspect (turned to portrait or landscape, or cropped).
@@ -68,6 +70,7 @@ def matched_to_footage(camera: Camera, size: tuple[int, int]) -> Camera:
         raise MocapError(
             f"{sizes}: portrait and landscape are swapped",
             "turn the footage to how it was calibrated, or calibrate as it was filmed",
+            file=file,
             camera=camera.name,
         )
     raise MocapError(
@@ -75,6 +78,7 @@ def matched_to_footage(camera: Camera, size: tuple[int, int]) -> Camera:
         "tell how it was scaled and cropped with [cameras] adjust = "
         f"{{ {camera.name} = {{ scale = 1.0, shift = [0.0, 0.0] }} }} "
         "(footage pixel = scale * calibrated pixel + shift)",
+        file=file,
         camera=camera.name,
     )
 

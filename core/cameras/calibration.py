@@ -8,7 +8,7 @@ be overridden. The result is always metres, Z up, OpenCV axes (FORMATS).
 import logging
 import re
 from collections import Counter
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -18,6 +18,7 @@ from ..errors import MocapError
 from .camera import Camera
 from .readers import anipose_toml, opencv_yml, qualisys_qca
 from .readers.file_camera import FileCamera, FileContent, Reader
+from .units import METRES_PER_UNIT, Placing
 
 READERS: tuple[Reader, ...] = (
     anipose_toml.READER,
@@ -26,8 +27,6 @@ READERS: tuple[Reader, ...] = (
 )
 _MOST_BYTES = 8 * 2**20
 _log = logging.getLogger(__name__)
-METRES_PER_UNIT = {"m": 1.0, "cm": 0.01, "mm": 0.001}
-WIDEST_SPREAD_IN_METRES = 50.0
 WORLD_FROM_UP = {
     "z": np.eye(3),
     "-z": np.diag([1.0, -1.0, -1.0]),
@@ -91,15 +90,16 @@ def read_calibration(path: str | Path, settings: CalibrationSettings | None = No
     path, settings = _file(Path(path)), settings or CalibrationSettings()
     reader = _reader(path, settings.format)
     content = _checked_content(path, reader)
-    units, guessed = _units(reader, content.cameras, settings.units)
+    kept = [c for c in content.cameras if settings.only is None or c.name in settings.only]
+    placing = _placing(kept)
+    units, guessed = _units(reader, placing, settings.units)
+    placing.check(units, path)
     cameras = tuple(
-        _metric_camera(path, camera, METRES_PER_UNIT[units], settings)
-        for camera in content.cameras
-        if settings.only is None or camera.name in settings.only
+        _metric_camera(path, camera, METRES_PER_UNIT[units], settings) for camera in kept
     )
     notes = list(content.notes)
     if guessed:
-        notes.append(_unit_note(content.cameras, units))
+        notes.append(_unit_note(placing, units))
     if settings.up is None:
         notes.extend(_up_notes(cameras))
     how = "guessed" if guessed else "known"
@@ -187,29 +187,23 @@ def _checked_content(path: Path, reader: Reader) -> FileContent:
     return FileContent(tuple(ordered), content.notes)
 
 
-def _centres(cameras: tuple[FileCamera, ...]) -> np.ndarray:
-    return np.array([-camera.rotation.T @ camera.translation for camera in cameras])
+def _placing(cameras: Sequence[FileCamera]) -> Placing:
+    centres = [-camera.rotation.T @ camera.translation for camera in cameras]
+    return Placing(tuple(camera.name for camera in cameras), np.array(centres).reshape(-1, 3))
 
 
-def _spread(centres: np.ndarray) -> float:
-    """The greatest distance between two centres; of a single one, from the origin."""
-    if len(centres) == 1:
-        return float(np.linalg.norm(centres[0]))
-    return float(np.linalg.norm(centres[:, None] - centres, axis=2).max())
-
-
-def _units(reader: Reader, cameras: tuple[FileCamera, ...], wanted: str | None) -> tuple[str, bool]:
+def _units(reader: Reader, placing: Placing, wanted: str | None) -> tuple[str, bool]:
     if wanted is not None:
         return wanted, False
     if reader.metres_per_unit is not None:
         return next(u for u, m in METRES_PER_UNIT.items() if m == reader.metres_per_unit), False
-    return ("mm" if _spread(_centres(cameras)) > WIDEST_SPREAD_IN_METRES else "m"), True
+    return placing.guessed_unit(), True
 
 
-def _unit_note(cameras: tuple[FileCamera, ...], units: str) -> str:
-    spread = _spread(_centres(cameras)) * METRES_PER_UNIT[units]
+def _unit_note(placing: Placing, units: str) -> str:
     return (
-        f"units are taken as {units}, which puts the cameras {spread:.2f} m apart; "
+        f"units are taken as {units}, which puts the cameras "
+        f"{placing.spread * METRES_PER_UNIT[units]:.2f} m apart; "
         'set units = "m", "cm" or "mm" if that is wrong'
     )
 

@@ -6,14 +6,16 @@ are those of the take: numbered files keep their numbers, videos and unnumbered 
 """
 
 import logging
+import os
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Protocol
 
 import numpy as np
 
 from ..errors import MocapError
-from .patterns import for_camera, frame_numbers, has_frame, natural_key
+from .patterns import for_camera, for_frame, frame_numbers, has_frame, natural_key
 from .pictures import PICTURE_SUFFIXES
 from .sequence import ListedFiles, NumberedFiles, PictureSequence
 from .video import Video
@@ -52,6 +54,14 @@ class Footage(Protocol):
         """
         ...
 
+    def file(self, frame: int) -> Path:
+        """The file that holds the picture of ``frame``.
+
+        Raises:
+            MocapError: the frame is missing.
+        """
+        ...
+
     def stamp(self, frame: int) -> tuple[int, int]:
         """Size and time of change (ns) of the file that holds the picture of ``frame``.
 
@@ -76,7 +86,7 @@ def open_footage(
             are sorted naturally (2 before 10) and counted from 0.
         camera: the camera's name.
         frames: first and last frame that will be asked for, inclusive; of a picture sequence all of
-            them must exist. A video's end is only found by decoding it: see ``Footage.frames``.
+            them must exist.
 
     Raises:
         MocapError: nothing there, not readable, or a frame of a sequence is missing.
@@ -116,12 +126,15 @@ def _opened(path: str, camera: str, frames: tuple[int, int] | None) -> Footage:
             file=place,
             camera=camera,
         )
-    return Video(camera, place)
+    return Video(camera, place, frames)
 
 
 def _numbered(pattern: str, camera: str) -> NumberedFiles:
     numbers = frame_numbers(pattern)
     if not numbers:
+        # a folder that may not be read seems to be empty
+        with suppress(FileNotFoundError, NotADirectoryError):
+            os.listdir(for_frame(pattern, 0).parent)
         raise MocapError(
             "no picture of this name",
             "check the folder, and how many digits the frame numbers have",
@@ -137,4 +150,17 @@ def _folder(folder: Path, camera: str) -> ListedFiles:
     names = sorted((path.name for path in paths if path.name[0] != "."), key=natural_key)
     if not names:
         raise MocapError("no pictures in this folder", "check the path", file=folder, camera=camera)
+    _check_distinct(folder, names, camera)
     return ListedFiles(folder, tuple(names))
+
+
+def _check_distinct(folder: Path, names: Sequence[str], camera: str) -> None:
+    """Refuses one frame under two names, such as 1.png and 000001.png, or 1.png and 1.jpg."""
+    seen: dict[tuple, str] = {}
+    for name in names:
+        other = seen.setdefault(natural_key(Path(name).stem), name)
+        if other != name:
+            raise MocapError(
+                f"{other} and {name} have the same number", "remove one of them",
+                file=folder, camera=camera,
+            )  # fmt: skip

@@ -56,6 +56,8 @@ def read_picture(
         raise MocapError("no such picture", remedy or "check the path", **place) from error
     except OSError as error:
         raise MocapError(f"cannot be read ({error.strerror})", "check the file", **place) from error
+    if not data.size:
+        raise MocapError("is an empty file", "export it again", **place)
     # unchanged keeps alpha but ignores the orientation tag, which only JPEG files carry in practice
     unchanged = data[:2].tobytes() != _JPEG_MAGIC
     flags = cv2.IMREAD_UNCHANGED if unchanged else cv2.IMREAD_ANYCOLOR | cv2.IMREAD_ANYDEPTH
@@ -69,6 +71,10 @@ def read_picture(
     if picture is None:
         raise MocapError(
             "is no picture that can be decoded, or is cut short", "export it again", **place
+        )
+    if picture.dtype.kind == "f" and not np.isfinite(picture).all():
+        raise MocapError(
+            "holds numbers that are not finite", "export it again with values from 0 to 1", **place
         )
     return picture
 

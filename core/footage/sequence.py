@@ -96,6 +96,7 @@ class PictureSequence:
         self.lossy = path.suffix.lower() in (".jpg", ".jpeg", ".webp")
         picture = read_picture(path, camera, first)
         self.size = (picture.shape[1], picture.shape[0])
+        self._first = first
 
     @property
     def frames(self) -> Sequence[int]:
@@ -113,7 +114,7 @@ class PictureSequence:
         size = (picture.shape[1], picture.shape[0])
         if size != self.size:
             raise MocapError(
-                f"is {size[0]} x {size[1]} px, but this camera's others are "
+                f"is {size[0]} x {size[1]} px, but frame {self._first} is "
                 f"{self.size[0]} x {self.size[1]} px",
                 "export all frames of a camera in one size",
                 file=path,
@@ -121,6 +122,10 @@ class PictureSequence:
                 frame=frame,
             )
         return picture
+
+    def file(self, frame: int) -> Path:
+        """The picture's file."""
+        return self._path(frame)
 
     def stamp(self, frame: int) -> tuple[int, int]:
         """Size and time of change (ns) of the picture's file."""

@@ -29,14 +29,16 @@ class Video:
     Args:
         camera: the camera's name.
         path: the file.
+        asked: first and last frame that will be asked for; None for whatever is there.
 
     Raises:
-        MocapError: not a video, or its first frame cannot be decoded.
+        MocapError: not a video, its first frame cannot be decoded, or it ends before the last
+            frame asked for.
     """
 
     lossy = True
 
-    def __init__(self, camera: str, path: Path):
+    def __init__(self, camera: str, path: Path, asked: tuple[int, int] | None = None):
         self.camera = camera
         self.path = path
         self._capture = self._opened()
@@ -46,6 +48,8 @@ class Video:
         self._held: dict[int, np.ndarray] = {}
         height, width = self.picture(0).shape[:2]
         self.size = (width, height)
+        if asked is not None and not self._seems_to_reach(asked[1]) and self._count <= asked[1]:
+            raise self._ended(self._count, self._count)
 
     @property
     def frames(self) -> Sequence[int]:
@@ -58,6 +62,15 @@ class Video:
         while capture.grab():
             count += 1
         return count
+
+    def _seems_to_reach(self, last: int) -> bool:
+        """Whether the file says so and ``last`` is found at once; both may be wrong (see above)."""
+        capture = self._opened()
+        return (
+            capture.get(cv2.CAP_PROP_FRAME_COUNT) > last
+            and capture.set(cv2.CAP_PROP_POS_FRAMES, last)
+            and capture.grab()
+        )
 
     def picture(self, frame: int) -> np.ndarray:
         """(H, W, 3) uint8 BGR picture of one frame.
@@ -80,14 +93,18 @@ class Video:
         self._held = {}
         while self._next < first:
             if not self._capture.grab():
-                raise self._ended(frame)
+                raise self._ended(frame, self._next)
             self._next += 1
         while self._next <= frame:
             good, picture = self._capture.read()
             if not good:
-                raise self._ended(frame)
+                raise self._ended(frame, self._next)
             self._held[self._next] = picture
             self._next += 1
+
+    def file(self, frame: int) -> Path:
+        """The video."""
+        return self.path
 
     def stamp(self, frame: int) -> tuple[int, int]:
         """Size and time of change (ns) of the video."""
@@ -110,12 +127,14 @@ class Video:
             )
         return capture
 
-    def _ended(self, frame: int) -> MocapError:
+    def _ended(self, frame: int, count: int) -> MocapError:
         promised = int(self._capture.get(cv2.CAP_PROP_FRAME_COUNT))
-        if promised > max(frame, self._next):
-            problem = f"breaks off after {self._next} of {promised} frames"
+        if not count:
+            problem, remedy = "holds no frame that can be decoded", "export it again"
+        elif promised > max(frame, count):
+            problem = f"breaks off after {count} of {promised} frames"
             remedy = "export it again, or narrow the take's frames"
         else:
-            problem = f"ends after {self._next} frames, counted from 0"
+            problem = f"ends after {count} frames, counted from 0"
             remedy = "give longer footage, or narrow the take's frames"
         return MocapError(problem, remedy, file=self.path, camera=self.camera, frame=frame)

@@ -1,5 +1,6 @@
 """Arrays by name, as stored in .npz files."""
 
+import io
 import zlib
 from pathlib import Path
 from zipfile import BadZipFile
@@ -19,8 +20,11 @@ def write_archive(path: Path, **arrays) -> None:
     Raises:
         MocapError: it cannot be written.
     """
+    # zipfile complains of a full disk once more on standard error when it writes to the disk itself
+    memory = io.BytesIO()
+    np.savez_compressed(memory, **arrays)
     with whole_file(path) as partial:
-        np.savez_compressed(partial, **arrays)
+        partial.write_bytes(memory.getvalue())
 
 
 def read_archive(path: Path, kind: str, remedy: str) -> dict[str, np.ndarray]:

@@ -1,5 +1,7 @@
 """Whether a first fit can be a performer; wrong units, floor or height give what cannot be."""
 
+from pathlib import Path
+
 import numpy as np
 
 from ..body.kinematics import rest_height
@@ -7,13 +9,29 @@ from ..cameras.camera import Camera
 from ..errors import MocapError
 from .first_pose import FirstFit
 
-_HEIGHTS_M = (0.5, 2.6)
+HEIGHTS_M = (0.5, 2.6)
+"""The shortest and the tallest performer."""
 _LEAST_IOU = 0.3
 _FAR_BELOW = 0.5
 _REMEDY = (
     "check units and up under [cameras], floor under [world], height_m under [performer] "
     "and the frames of initial_pose"
 )
+
+
+def check_height(height: float, file: Path | None = None) -> None:
+    """Refuses a standing height (m) that nobody has; ``file`` is the body's, where it has one.
+
+    Raises:
+        MocapError: a dwarf or a giant.
+    """
+    lowest, highest = HEIGHTS_M
+    if not lowest <= height <= highest:
+        raise MocapError(
+            f"the performer would be {height:.4g} m tall, not {lowest} to {highest} m",
+            _REMEDY,
+            file=file,
+        )
 
 
 def check_first_fit(first: FirstFit, cameras: tuple[Camera, ...]) -> tuple[str, ...]:
@@ -26,12 +44,7 @@ def check_first_fit(first: FirstFit, cameras: tuple[Camera, ...]) -> tuple[str, 
     Raises:
         MocapError: a height that nobody has, or silhouettes that the fit does not resemble.
     """
-    height = rest_height(first.body)
-    lowest, highest = _HEIGHTS_M
-    if not lowest <= height <= highest:
-        raise MocapError(
-            f"the performer would be {height:.4g} m tall, not {lowest} to {highest} m", _REMEDY
-        )
+    check_height(rest_height(first.body))
     iou = first.iou
     seen = np.flatnonzero(np.isfinite(iou))
     if not len(seen) or iou[seen].mean() < _LEAST_IOU:

@@ -23,18 +23,29 @@ def body_centre(cameras: tuple[Camera, ...], silhouettes: tuple[Silhouette, ...]
     """
     centres, directions = [], []
     for camera, silhouette in zip(cameras, silhouettes, strict=True):
-        rows, columns = np.nonzero(main_patch(silhouette))
-        if len(rows):
-            pixel = [columns.mean(), rows.mean(), 1.0]
-            ray = camera.rotation.T @ np.linalg.solve(camera.matrix, pixel)
+        ray = centroid_ray(camera, silhouette)
+        if ray is not None:
             centres.append(camera.centre)
-            directions.append(ray / np.linalg.norm(ray))
+            directions.append(ray)
     if len(centres) < 2:
         raise MocapError(
             f"only {len(centres)} of {len(cameras)} views show the performer in the initial pose",
             "give other initial_pose frames or better silhouettes",
         )
     return _nearest_to_rays(np.array(centres), np.array(directions))
+
+
+def centroid_ray(camera: Camera, silhouette: Silhouette) -> np.ndarray | None:
+    """(3,) unit direction in the world from the camera to the silhouette's centroid.
+
+    None where the silhouette is empty.
+    """
+    rows, columns = np.nonzero(main_patch(silhouette))
+    if not len(rows):
+        return None
+    pixel = [columns.mean(), rows.mean(), 1.0]
+    ray = camera.rotation.T @ np.linalg.solve(camera.matrix, pixel)
+    return ray / np.linalg.norm(ray)
 
 
 def _nearest_to_rays(centres: np.ndarray, directions: np.ndarray) -> np.ndarray:

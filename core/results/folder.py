@@ -32,7 +32,7 @@ def occupied(folder: Path) -> Iterator[None]:
     Raises:
         MocapError: the folder cannot be made or written to, or another run occupies it.
     """
-    missing = [place for place in (folder, *folder.parents) if not place.exists()]
+    missing = [place for place in (folder, *folder.parents) if not os.path.exists(place)]
     lock = _locked(made_folder(folder) / LOCK)
     try:
         yield

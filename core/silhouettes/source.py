@@ -9,6 +9,7 @@ import numpy as np
 from ..errors import MocapError
 from ..footage.footage import Footage
 from .cleaning import Cleaned, Cleaning, cleaned
+from .masks import ReadyMasks
 from .silhouette import Silhouette
 
 
@@ -75,8 +76,18 @@ class SilhouetteSource:
             yield frame, self.read(frame)
 
     def mask(self, frame: int) -> Cleaned:
-        """The cleaned mask of one frame in footage pixels, before lens and ignore mask."""
+        """The cleaned mask of one frame in footage pixels, before lens and ignore mask.
+
+        Raises:
+            MocapError: the frame is missing or damaged, or a ready mask is white all over.
+        """
         mask = self.extractor.foreground(self.footage.picture(frame))
+        if isinstance(self.extractor, ReadyMasks) and mask.all():
+            raise MocapError(
+                "is white all over, which no performer is",
+                "make the mask again, or paint it black if nobody is in the picture",
+                file=self.footage.file(frame), camera=self.footage.camera, frame=frame,
+            )  # fmt: skip
         if self.cleaning is None:
             return Cleaned(mask, 0, 0)
         return cleaned(mask, self.cleaning)

@@ -12,11 +12,13 @@ from ..cameras.arrangement import opposite_pairs
 from ..cameras.calibration import CalibrationSettings, read_calibration
 from ..errors import MocapError
 from ..fitting.hierarchical import EvaluatorFactory
+from ..initialisation.plausibility import check_height
 from ..initialisation.standing import body_centre, standing_height
 from ..native.library import load
 from ..silhouettes.silhouette import Silhouette
 from .camera_facts import CameraFacts, Performer, camera_facts, units_in_words
 from .estimate import Estimate, Trial, estimated
+from .first_look import check_first_look
 from .footage_check import FootageFacts, checked_footage
 from .take import Take
 from .views import Views, open_views
@@ -110,12 +112,14 @@ def checked(take: Take, request: CheckRequest) -> TakeCheck:
 
 def _checked_views(take: Take, request: CheckRequest, faults: _Faults) -> TakeCheck:
     views = _opened(take, faults)
-    found = TakeCheck(take, views.frames, _units(take, views))
+    found = TakeCheck(take, views.frames, _units(take, views), notes=views.notes)
     start, silhouettes, performer = 0, (), None
     with faults.noted():
         begin = request.initial_frames(take, views.frames)
         views, start = views.reduced(begin), begin[0]
-        silhouettes = views.silhouettes(start)
+        seen = {frame: views.silhouettes(frame) for frame in begin}
+        silhouettes = seen[start]
+        found = replace(found, notes=(*found.notes, *check_first_look(take, views, seen)))
         performer = _performer(take, views, silhouettes)
     footage = checked_footage(views, request.seconds)
     for fault in footage.faults:
@@ -132,7 +136,6 @@ def _checked_views(take: Take, request: CheckRequest, faults: _Faults) -> TakeCh
         footage=footage.cameras,
         performer=performer,
         estimate=estimate,
-        notes=(*views.notes, *footage.notes),
     )
 
 
@@ -167,6 +170,7 @@ def _performer(take: Take, views: Views, silhouettes: tuple[Silhouette, ...]) ->
     height = take.performer.height_m
     if height is None and isinstance(body, Path):
         height = rest_height(read_body(body))
+        check_height(height, body)
     if height is None:
         height = standing_height(views.cameras, silhouettes, centre, take.floor)
     return Performer(centre, height)

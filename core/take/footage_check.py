@@ -6,7 +6,7 @@ first; a video only runs forwards.
 """
 
 import time
-from collections.abc import Callable, Generator, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 
@@ -70,13 +70,11 @@ class FootageCheck:
     Attributes:
         cameras: in the order of the views.
         faults: of each camera the first missing frame, and the first picture that is at fault.
-        notes: sentences that the user should see.
         seconds: to read one frame of all cameras, as far as known; else NaN.
     """
 
     cameras: tuple[FootageFacts, ...]
     faults: tuple[MocapError, ...]
-    notes: tuple[str, ...]
     seconds: float
 
 
@@ -122,11 +120,9 @@ def checked_footage(views: Views, seconds: float) -> FootageCheck:
         list(pool.map(decode, looks, orders))
     extracted = sum(len(look.covers) for look in looks)
     cameras = tuple(_facts(look, views.frames) for look in looks)
-    sound = [facts for facts, look in zip(cameras, looks, strict=True) if not look.faults]
     return FootageCheck(
         cameras=cameras,
         faults=tuple(fault for look in looks for fault in look.faults),
-        notes=tuple(_short_videos(sound, views.frames[1])),
         seconds=len(looks) * spent / extracted if extracted else float("nan"),
     )
 
@@ -183,16 +179,6 @@ def coarse_to_fine(count: int) -> Iterator[int]:
         spread = int(f"{number:0{bits}b}"[::-1], 2)
         if spread < last:
             yield spread
-
-
-def _short_videos(cameras: Sequence[FootageFacts], last: int) -> Iterator[str]:
-    """Of videos that were not decoded to their end, what their heads make fear."""
-    for facts in cameras:
-        if facts.is_video and facts.looked_at < facts.wanted and facts.there[1] < last:
-            yield (
-                f"camera {facts.camera}: the video says that it holds {facts.count} frames, the "
-                f"take goes to frame {last}"
-            )
 
 
 def _stated_frames(video: Video) -> int:

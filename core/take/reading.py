@@ -11,10 +11,13 @@ from pathlib import Path
 from typing import Any
 
 from ..body.templates import TEMPLATES
+from ..cameras.calibration import READERS, WORLD_FROM_UP
+from ..cameras.units import METRES_PER_UNIT
 from ..errors import MocapError
 from ..fitting.hierarchical import SETTINGS
+from ..initialisation.plausibility import HEIGHTS_M
 from ..toml import read_toml
-from .paths import PATH_KEYS, inside
+from .paths import PATH_KEYS, followed, inside
 from .table import Table
 from .take import (
     EXPORTS,
@@ -31,6 +34,9 @@ from .take import (
 )
 
 VERSION = 1
+_FRAME_RATES = (0.1, 10_000.0)
+_SCALES = (0.01, 100.0)
+_LONGEST_NAME = 100
 _TOP = (
     "version", "name", "fps", "frames", "initial_pose", "extends", "locks",
     "cameras", "footage", "performer", "world", "fit", "export",
@@ -53,8 +59,8 @@ def read_take(path: str | Path, root: str | Path | None = None) -> Take:
         MocapError: no such file, not TOML, an unknown or missing key, a wrong value, a path outside
             ``root``, or something that is not supported yet.
     """
-    path = Path(path).resolve()
-    top_folder = path.parent.parent if root is None else Path(root).resolve()
+    path = followed(Path(path))
+    top_folder = path.parent.parent if root is None else followed(Path(root))
     inside(path, top_folder, path, "the take itself")
     take = _take(Table(_merged(path, top_folder, ()), path))
     _log.info("take %s from %s; all its files lie in %s", take.name, path, top_folder)
@@ -74,12 +80,12 @@ def _merged(path: Path, root: Path, above: tuple[Path, ...]) -> dict[str, Any]:
         for key in keys:
             text = part.text(key)
             if text is not None:
-                part.values[key] = str(inside(text, root, path, part.key(key)))
+                part.values[key] = str(inside(text, root, path, f'"{part.key(key)}"'))
     _place_body(table.table("performer"), root)
     base = table.text("extends")
     if base is None:
         return values
-    base_path = inside(base, root, path, "extends")
+    base_path = inside(base, root, path, '"extends"')
     return _over(_merged(base_path, root, (*above, path)), values)
 
 
@@ -96,7 +102,7 @@ def _over(base: dict[str, Any], values: dict[str, Any]) -> dict[str, Any]:
 def _place_body(performer: Table, root: Path) -> None:
     body = performer.text("body")
     if body is not None and body.endswith(".npz"):
-        performer.values["body"] = str(inside(body, root, performer.file, "performer.body"))
+        performer.values["body"] = str(inside(body, root, performer.file, '"performer.body"'))
 
 
 def _take(table: Table) -> Take:
@@ -145,12 +151,17 @@ def _name(table: Table) -> str:
         return table.file.parent.name
     if name in (".", "..") or any(c in name for c in '/\\:*?"<>|\0') or name != name.strip():
         table.fault(f'"name" = {name!r} cannot name files', "use letters, digits, _ and -")
+    if len(name.encode()) > _LONGEST_NAME:
+        table.fault(
+            f'"name" has {len(name.encode())} bytes, too long to name files',
+            f"shorten it to {_LONGEST_NAME}",
+        )
     return name
 
 
 def _fps(table: Table) -> Fraction:
     table.required("fps")
-    fps = table.number("fps", lowest=0.0)
+    fps = table.number("fps", *_FRAME_RATES)
     assert fps is not None
     return exact_fps(fps)
 
@@ -181,16 +192,16 @@ def _cameras(table: Table) -> Calibrated:
     adjust = table.table("adjust")
     return Calibrated(
         calibration=Path(table.text("calibration") or ""),
-        format=table.text("format"),
-        units=table.text("units"),
-        up=table.text("up"),
+        format=table.choice("format", [reader.key for reader in READERS]),
+        units=table.choice("units", METRES_PER_UNIT),
+        up=table.choice("up", WORLD_FROM_UP),
         adjust={camera: _adjustment(adjust.table(camera)) for camera in adjust.values},
     )
 
 
 def _adjustment(table: Table) -> Adjustment:
     table.allow("scale", "shift")
-    scale, shift = table.number("scale", lowest=0.0), table.numbers("shift", 2)
+    scale, shift = table.number("scale", *_SCALES), table.numbers("shift", 2)
     return Adjustment(1.0 if scale is None else scale, (0.0, 0.0) if shift is None else shift)
 
 
@@ -226,5 +237,5 @@ def _performer(table: Table) -> Performer:
     return Performer(
         # paths are absolute by now
         body=Path(body) if os.path.isabs(body) else table.choice("body", TEMPLATES, "performer"),
-        height_m=table.number("height_m", lowest=0.0),
+        height_m=table.number("height_m", *HEIGHTS_M),
     )

@@ -5,12 +5,13 @@ import math
 from collections.abc import Collection
 from dataclasses import fields
 from pathlib import Path
-from typing import Any, NoReturn, TypeVar
+from typing import Any, NoReturn, TypeVar, overload
 
 from ..errors import MocapError
 
 _LONGEST_SHOWN = 200
 Settings = TypeVar("Settings")
+_LAST_FRAME = 10**9
 _TYPES = {bool: "true or false", int: "a whole number", float: "a number", str: "a text"}
 
 
@@ -73,7 +74,11 @@ class Table:
             self._wrong(name, "a text")
         return value
 
-    def choice(self, name: str, known: Collection[str], default: str) -> str:
+    @overload
+    def choice(self, name: str, known: Collection[str], default: str) -> str: ...
+    @overload
+    def choice(self, name: str, known: Collection[str]) -> str | None: ...
+    def choice(self, name: str, known: Collection[str], default: str | None = None) -> str | None:
         """One of the ``known`` words."""
         value = self.text(name)
         if value is None:
@@ -82,14 +87,16 @@ class Table:
             self._wrong(name, "one of " + ", ".join(known))
         return value
 
-    def number(self, name: str, lowest: float = -math.inf) -> float | None:
-        """A finite number above ``lowest``, or None."""
+    def number(
+        self, name: str, lowest: float = -math.inf, highest: float = math.inf
+    ) -> float | None:
+        """A finite number from ``lowest`` to ``highest``, inclusive, or None."""
         value = self.values.get(name)
         if value is None:
             return None
-        bound = "" if lowest == -math.inf else f" above {lowest:g}"
-        if not _is_number(value) or value <= lowest:
-            self._wrong(name, f"a number{bound}")
+        bounds = f" from {lowest:g} to {highest:g}" if math.isfinite(lowest) else ""
+        if not _is_number(value) or not lowest <= value <= highest:
+            self._wrong(name, f"a number{bounds}")
         return float(value)
 
     def numbers(self, name: str, count: int, kind: type = float) -> tuple | None:
@@ -98,15 +105,15 @@ class Table:
         if value is None:
             return None
         right = isinstance(value, list) and len(value) == count
-        if not right or not all(_is_number(v) and (kind is float or type(v) is int) for v in value):
+        if not right or not all(type(v) is int if kind is int else _is_number(v) for v in value):
             self._wrong(name, f"a list of {count} {'whole ' if kind is int else ''}numbers")
         return tuple(kind(v) for v in value)
 
     def frames(self, name: str) -> tuple[int, int] | None:
         """First and last frame, inclusive, or None."""
         value = self.numbers(name, 2, int)
-        if value is not None and not 0 <= value[0] <= value[1]:
-            self._wrong(name, "[first, last] with 0 <= first <= last")
+        if value is not None and not 0 <= value[0] <= value[1] <= _LAST_FRAME:
+            self._wrong(name, f"[first, last] with 0 <= first <= last <= {_LAST_FRAME}")
         return value
 
     def flag(self, name: str) -> bool:

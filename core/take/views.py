@@ -125,22 +125,21 @@ def open_views(
         MocapError: calibration or footage that is missing or does not fit, an unknown camera, or
             fewer than two cameras.
     """
-    used = _used_names(take, camera_names(take), without)
+    used = _used_names(take, without)
     _check_patterns(take)
     pattern = footage_pattern(take)
     span = None if take.frames is None else _narrowed(take, take.frames, frames)
     footage = {name: open_footage(pattern, name, span) for name in used}
     if len(used) < _FEWEST_CAMERAS:
-        raise MocapError(
-            f"{len(used)} camera left", f"use at least {_FEWEST_CAMERAS}", file=take.path
-        )
+        count = f"{len(used)} camera{'s' * (len(used) != 1)} left"
+        raise MocapError(count, f"use at least {_FEWEST_CAMERAS}", file=take.path)
     sizes = {name: f.size for name, f in footage.items()}
-    settings = replace(_calibration_settings(take), sizes=sizes)
+    settings = replace(_calibration_settings(take), sizes=sizes, only=used)
     calibration = read_calibration(take.cameras.calibration, settings)
-    cameras = [camera for camera in calibration.cameras if camera.name in used]
+    cameras = calibration.cameras
     views = tuple(_view(take, camera, footage[camera.name]) for camera in cameras)
     notes = [*calibration.notes, *_opposite_notes(cameras), *_rate_notes(take, footage)]
-    return Views(views, span or _narrowed(take, _common(footage), frames), tuple(notes))
+    return Views(views, span or _narrowed(take, _common(take, footage), frames), tuple(notes))
 
 
 def camera_names(take: Take) -> tuple[str, ...]:
@@ -167,8 +166,14 @@ def _check_patterns(take: Take) -> None:
             )  # fmt: skip
 
 
-def _used_names(take: Take, names: Sequence[str], without: Sequence[str]) -> tuple[str, ...]:
+def _used_names(take: Take, without: Sequence[str]) -> tuple[str, ...]:
+    names = camera_names(take)
     known = ", ".join(names)
+    if len(names) < _FEWEST_CAMERAS:
+        raise MocapError(
+            f"holds only 1 camera, {known}", f"calibrate at least {_FEWEST_CAMERAS}",
+            file=take.cameras.calibration,
+        )  # fmt: skip
     for name in (*without, *take.cameras.adjust):
         if name not in names:
             raise MocapError(
@@ -188,7 +193,7 @@ def _view(take: Take, calibrated: Camera, footage: Footage) -> View:
     ignored = np.zeros(size[::-1], bool)
     adjustment = take.cameras.adjust.get(name)
     if adjustment is None:
-        camera = matched_to_footage(calibrated, size)
+        camera = matched_to_footage(calibrated, size, for_camera(footage_pattern(take), name))
     else:
         change = (adjustment.scale, adjustment.shift)
         camera = adjusted(calibrated, *change, size)
@@ -218,6 +223,11 @@ def _ignore_mask(pattern: str, camera: str, size: tuple[int, int]) -> np.ndarray
         raise MocapError(
             f"is {mask.shape[1]} x {mask.shape[0]} px, the footage {size[0]} x {size[1]} px",
             "paint it over a frame of the footage", file=path, camera=camera,
+        )  # fmt: skip
+    if mask.all():
+        raise MocapError(
+            "hides everything", "paint white only what is not to be trusted",
+            file=path, camera=camera,
         )  # fmt: skip
     return mask
 
@@ -249,10 +259,18 @@ EXTRACTORS: dict[str, Callable[[Plate, Table], Extractor]] = {
 }
 
 
-def _common(footage: dict[str, Footage]) -> tuple[int, int]:
+def _common(take: Take, footage: dict[str, Footage]) -> tuple[int, int]:
     """First and last frame, inclusive, that all cameras filmed."""
-    filmed = [f.frames for f in footage.values()]
-    return max(frames[0] for frames in filmed), min(frames[-1] for frames in filmed)
+    firsts = {name: f.frames[0] for name, f in footage.items()}
+    lasts = {name: f.frames[-1] for name, f in footage.items()}
+    late, early = max(firsts, key=firsts.__getitem__), min(lasts, key=lasts.__getitem__)
+    if firsts[late] > lasts[early]:
+        raise MocapError(
+            f"no frame is common to all: footage of {early} ends with frame {lasts[early]}, that "
+            f"of {late} begins with {firsts[late]}",
+            "renumber it so that one number is one moment", file=take.path,
+        )  # fmt: skip
+    return firsts[late], lasts[early]
 
 
 def _narrowed(

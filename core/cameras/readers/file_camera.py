@@ -13,9 +13,11 @@ import cv2
 import numpy as np
 
 from ...errors import MocapError
+from ...toml import POINTS_NOT_COMMAS
 from ..camera import LENS_COEFFICIENTS
 
 _LARGEST = 1e12
+_REMEDY = f"correct or re-export the file; {POINTS_NOT_COMMAS}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,9 +92,7 @@ def numbers(value, place: Place) -> np.ndarray:
     try:
         array = np.array(value, dtype=float)
     except (TypeError, ValueError):
-        raise place.fault(
-            f"should hold numbers, got {_shortened(value)}", "correct or re-export the file"
-        ) from None
+        raise place.fault(f"should hold numbers, got {_shortened(value)}", _REMEDY) from None
     if not np.isfinite(array).all():
         raise place.fault(
             "holds a number that is not finite", "calibrate this camera again or leave it out"
@@ -114,9 +114,7 @@ def numbers_of_shape(value, shape: tuple[int, ...], place: Place) -> np.ndarray:
     array = numbers(value, place)
     if array.size != np.prod(shape):
         wanted = " x ".join(str(n) for n in shape)
-        raise place.fault(
-            f"should hold {wanted} numbers, got {array.size}", "correct or re-export the file"
-        )
+        raise place.fault(f"should hold {wanted} numbers, got {array.size}", _REMEDY)
     return array.reshape(shape)
 
 
@@ -156,8 +154,7 @@ def distortion_coefficients(value, fisheye: bool, place: Place) -> np.ndarray:
         wanted = " or ".join(str(n) for n in counts)
         model = "fisheye lens" if fisheye else "lens"
         raise place.fault(
-            f"should hold {wanted} numbers for a {model}, got {coefficients.size}",
-            "correct or re-export the file",
+            f"should hold {wanted} numbers for a {model}, got {coefficients.size}", _REMEDY
         )
     return coefficients
 
@@ -172,10 +169,7 @@ def rotation_matrix(value, place: Place) -> np.ndarray:
     if array.size == 3:
         return cv2.Rodrigues(array.reshape(3, 1))[0]
     if array.size != 9:
-        raise place.fault(
-            f"should hold 3 (Rodrigues) or 3 x 3 numbers, got {array.size}",
-            "correct or re-export the file",
-        )
+        raise place.fault(f"should hold 3 (Rodrigues) or 3 x 3 numbers, got {array.size}", _REMEDY)
     matrix = array.reshape(3, 3)
     if not np.allclose(matrix @ matrix.T, np.eye(3), atol=1e-3):
         raise place.fault("is not a rotation (its rows are not orthonormal)", "re-export the file")

@@ -7,12 +7,14 @@ one file that holds both halves are read alike.
 """
 
 import re
+from collections import Counter
 from pathlib import Path
 
 import cv2
 import numpy as np
 
 from ...errors import MocapError
+from ...toml import POINTS_NOT_COMMAS
 from .file_camera import (
     FileCamera,
     FileContent,
@@ -46,10 +48,13 @@ def read(path: Path) -> FileContent:
     names = [key[2:] for key in lenses if key.startswith("K_")]
     listed = lenses.get("names")
     listed = listed if isinstance(listed, list) else []
-    missing = [name for name in listed if name not in [*names, "none"]]
+    listed = [name for name in listed if name != "none"]
+    placed = [key[2:] for key in positions if key.startswith("T_")]
+    missing = [name for name in (*listed, *placed) if name not in names]
     if missing:
         raise Place(lens_file, missing[0], f"K_{missing[0]}").fault(
-            "is missing, though the camera is among the names", "add it or take the name out"
+            f"is missing, though {position_file.name} has the camera",
+            "add it, or leave this camera out of both files",
         )
     return FileContent(
         tuple(
@@ -117,13 +122,18 @@ def _nodes(path: Path) -> dict[str, np.ndarray | list[str] | float]:
         _check_one_document(text, path)
         storage = cv2.FileStorage(text, cv2.FileStorage_READ | cv2.FileStorage_MEMORY)
         root = storage.root()
-        return {key: _value(root.getNode(key)) for key in root.keys()}  # noqa: SIM118
+        keys = root.keys()
+        nodes = {key: _value(root.getNode(key)) for key in keys}
     except (cv2.error, SystemError, UnicodeDecodeError, OSError) as error:
-        cause = error.__cause__ or error  # cv2 wraps its own error where a binding fails late
-        reason = str(getattr(cause, "err", cause)).strip()
         raise MocapError(
-            f"OpenCV cannot read it ({reason})", "complete the file or write it again", file=path
-        ) from None
+            "is cut short or not as OpenCV writes it",
+            f"complete the file or write it again; {POINTS_NOT_COMMAS}",
+            file=path,
+        ) from error
+    if len(nodes) < len(keys):
+        key = Counter(keys).most_common(1)[0][0]
+        raise MocapError(f"{key} stands in it twice", "give each camera its own name", file=path)
+    return nodes
 
 
 def _check_one_document(text: str, path: Path) -> None:

@@ -50,7 +50,7 @@ def test_a_scale_must_be_positive():
 
 def test_footage_of_the_calibrated_size_keeps_the_camera():
     source = camera()
-    assert matched_to_footage(source, PORTRAIT) is source
+    assert matched_to_footage(source, PORTRAIT, "cam01.mp4") is source
 
 
 def test_resized_footage_shows_a_spot_where_the_scaled_camera_projects_it():
@@ -61,21 +61,21 @@ def test_resized_footage_shows_a_spot_where_the_scaled_camera_projects_it():
     small = cv2.resize(spot, (320, 240), interpolation=cv2.INTER_AREA)
     rows, columns = np.mgrid[:240, :320]
     centre = [(small * columns).sum() / small.sum(), (small * rows).sum() / small.sum()]
-    found = matched_to_footage(source, (320, 240)).project(POINTS[0])
+    found = matched_to_footage(source, (320, 240), "cam01.mp4").project(POINTS[0])
     np.testing.assert_allclose(found, centre, atol=0.01)
 
 
 def test_sizes_rounded_to_whole_pixels_still_agree_in_aspect():
-    assert matched_to_footage(camera(size=(1920, 1080)), (853, 480)).size == (853, 480)
+    assert matched_to_footage(camera(size=(1920, 1080)), (853, 480), "cam01.mp4").size == (853, 480)
 
 
 def test_another_aspect_names_both_sizes_and_the_remedy():
     with pytest.raises(MocapError) as caught:
-        matched_to_footage(camera(), (1080, 1920))
+        matched_to_footage(camera(), (1080, 1920), "cam01.mp4")
     for part in ("cam01", "1080 x 1920", "1088 x 1920", "another aspect", "adjust ="):
         assert part in str(caught.value)
 
 
 def test_portrait_footage_of_a_landscape_calibration_is_named_as_such():
     with pytest.raises(MocapError, match="portrait and landscape are swapped"):
-        matched_to_footage(camera(size=(1920, 1080)), (540, 960))
+        matched_to_footage(camera(size=(1920, 1080)), (540, 960), "cam01.mp4")

@@ -67,7 +67,7 @@ def test_cameras_without_a_name_are_called_by_their_table(tmp_path):
 
 def test_caliscope_tables_are_nested_and_may_be_ignored(tmp_path):
     text = "".join(
-        table(f"cameras.{n}", name=None, fisheye=None, **extra)
+        table(f"cameras.{n}", name=None, fisheye=None, translation=f"[{n}, 1, 4]", **extra)
         for n, extra in [(10, {}), (2, {"rotation_count": "1"}), (3, {"ignore": "true"})]
     )
     calibration = read_calibration(written(tmp_path, text))
@@ -77,7 +77,7 @@ def test_caliscope_tables_are_nested_and_may_be_ignored(tmp_path):
 
 
 def test_cameras_stand_in_natural_order(tmp_path):
-    text = "".join(table(f"cam_{n}") for n in (10, 2, 1))
+    text = "".join(table(f"cam_{n}", translation=f"[{n}, 1, 4]") for n in (10, 2, 1))
     names = [camera.name for camera in read_calibration(written(tmp_path, text)).cameras]
     assert names == ["cam_1", "cam_2", "cam_10"]
 

@@ -1,12 +1,43 @@
 """What is wrong with the words or files given: one clear line that names it, and exit code 2."""
 
 import shutil
+import sys
+from pathlib import Path
 
 import pytest
-from silhouette_mocap.core.body.file import write_body
-from silhouette_mocap.core.body.scaling import scaled
-from silhouette_mocap.core.body.templates import template
+from fault_chapters import CHAPTERS
+from faults import Fault, met, table_row
+from silhouette_mocap.core import cli
 from silhouette_mocap.core.cli import main
+
+TABLE = (Path(cli.__file__).parent / "FAULTS.md").read_text("utf-8")
+FAULTS = [fault for chapter in CHAPTERS for fault in chapter.faults]
+
+
+def as_case(fault: Fault):
+    marks = [pytest.mark.skipif(bool(fault.unless), reason=fault.unless)] if fault.unless else []
+    return pytest.param(fault, id=fault.title.replace(" ", "_"), marks=marks)
+
+
+@pytest.mark.parametrize("case", [as_case(fault) for fault in FAULTS])
+def test_every_fault_is_one_line_and_two(case, small_take, tmp_path):
+    told, by_info = met(case, small_take, tmp_path)
+    assert told.code == 2, told.error
+    assert told.error.count("\n") == 1 and told.error.startswith("silhouette-mocap: ")
+    for part in case.says:
+        assert part in told.error
+    if by_info is not None:
+        assert by_info.code == 2 and told.error in by_info.error
+    if sys.platform == "linux":
+        assert table_row(case, told.shown(tmp_path)) in TABLE, "run .ci/faults.py"
+
+
+def test_the_table_holds_no_other_faults():
+    told_here = [fault for fault in FAULTS if not fault.unless]
+    assert sum(line.startswith("| ") for line in TABLE.splitlines()) == (
+        len(told_here) + len(CHAPTERS)
+    )
+    assert len({fault.title for fault in FAULTS}) == len(FAULTS)
 
 
 @pytest.fixture
@@ -58,15 +89,6 @@ def test_a_fit_too_short_for_offsets_says_so(quick_start, small_take, tmp_path, 
     assert main(["fit", str(small_take), "--out", str(tmp_path), "--frames", "0:1"]) == 0
     out = capsys.readouterr().out
     assert "too few frames to remove constant offsets" in out and "nan" not in out
-
-
-def test_a_first_fit_that_cannot_be_is_refused(quick_start, small_take, tmp_path, fault):
-    folder = shutil.copytree(small_take.parent, tmp_path / "session" / "small")
-    write_body(folder / "giant.npz", scaled(template("sixteen_segment"), 1000.0))
-    text = small_take.read_text("utf-8").replace("sixteen_segment", "giant.npz")
-    (folder / "take.toml").write_text(text, "utf-8")
-    line = fault("fit", folder / "take.toml", "--out", tmp_path / "out")
-    assert "m tall, not 0.5 to 2.6 m" in line and "units" in line
 
 
 def test_a_damaged_truth_is_told(small_take, tmp_path, fault):

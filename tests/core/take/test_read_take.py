@@ -25,7 +25,7 @@ frames = [3, 74]
 initial_pose = { frames = [4, 7], kind = "elbows" }
 [cameras]
 calibration = "../calibration.toml"
-format = "pose2sim"
+format = "toml"
 units = "mm"
 up = "-y"
 adjust = { cam01 = { scale = 0.99265, shift = [0.0, 7.06] } }
@@ -84,7 +84,7 @@ def test_every_key_that_works_arrives(folder):
     assert (take.name, take.fps, take.frames) == ("walk", Fraction(30000, 1001), (3, 74))
     assert (take.initial_pose.frames, take.initial_pose.kind) == ((4, 7), "elbows")
     assert take.cameras.calibration == folder.parent / "calibration.toml"
-    assert (take.cameras.format, take.cameras.units, take.cameras.up) == ("pose2sim", "mm", "-y")
+    assert (take.cameras.format, take.cameras.units, take.cameras.up) == ("toml", "mm", "-y")
     assert take.cameras.adjust == {"cam01": Adjustment(0.99265, (0.0, 7.06))}
     assert take.footage.video == str(folder / "videos/{camera}.mp4")
     assert take.footage.plate == str(folder / "plates/{camera}.png")
@@ -150,10 +150,10 @@ def test_a_fault_in_a_shared_file_names_the_shared_file(folder):
     [
         ("fps = 15.0", "fsp = 15.0", 'unknown key "fsp"; did you mean "fps"?'),
         ("fps = 15.0", "", '"fps" is missing'),
-        ("fps = 15.0", "fps = 0", 'a number above 0 for "fps", got a whole number (0)'),
+        ("fps = 15.0", "fps = 0", 'a number from 0.1 to 10000 for "fps", got a whole number (0)'),
         ("fps = 15.0", 'fps = "15"', "got a text ('15')"),
         ("fps = 15.0", "fps = true", "got true or false"),
-        ("fps = 15.0", "fps = nan", 'expected a number above 0 for "fps"'),
+        ("fps = 15.0", "fps = nan", 'expected a number from 0.1 to 10000 for "fps"'),
         ("version = 1", "version = 2", 'expected "version" = 1, got 2'),
         ("version = 1", "", 'expected "version" = 1, got none'),
         ("[cameras]", "frames = [5, 2]\n[cameras]", "0 <= first <= last"),
