@@ -30,6 +30,7 @@ from .results.writing import (
     MOTION,
     FitResult,
     Outcome,
+    check_spared,
     finished_result,
     resumed,
     with_overlay,
@@ -95,6 +96,7 @@ def fit(take: Take, request: FitRequest, progress: Progress) -> FitResult:
         MocapError: the take, its calibration or its footage is at fault, or the unfinished fit was
             begun with other inputs.
     """
+    check_spared(take, request.out)
     views = open_views(take, request.without, request.frames)
     made_folder(request.out)
     inputs = fit_inputs(take, views, request.settings)

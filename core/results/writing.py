@@ -67,6 +67,20 @@ class Outcome:
         return len(self.journal) == last - first + 1
 
 
+def check_spared(take: Take, folder: Path) -> None:
+    """Refuses a ``folder`` in which the result would replace what ``take`` is made of.
+
+    Raises:
+        MocapError: it would replace the performer's body.
+    """
+    body = take.performer.body
+    if isinstance(body, Path) and body == (folder / BODY).resolve():
+        raise MocapError(
+            "is the body that the take names, and the result would replace it",
+            "give another folder", file=body,
+        )  # fmt: skip
+
+
 def write_results(outcome: Outcome, folder: Path, progress: Progress) -> FitResult:
     """Writes all but the overlay, each whole or not at all; nothing that may fail comes first.
 

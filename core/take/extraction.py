@@ -27,6 +27,8 @@ def write_take_masks(views: Views, folder: Path, progress: Progress) -> dict[str
     Raises:
         MocapError: a frame that is missing or damaged, or a folder that cannot be written.
     """
+    for view in views.views:
+        _check_spared(view, folder)
     first, last = views.frames
     progress.begin("masks", len(views.views) * (last - first + 1))
     pattern = folder / "{camera}" / "{frame:06d}.png"
@@ -36,6 +38,16 @@ def write_take_masks(views: Views, folder: Path, progress: Progress) -> dict[str
         write_masks(pattern, view.camera.name, _masks(view, views.frames, meter, progress))
         found[view.camera.name] = meter.quality()
     return found
+
+
+def _check_spared(view: View, folder: Path) -> None:
+    """Refuses to write masks over the pictures that they are made from."""
+    place, target = Path(view.place), (folder / view.camera.name).resolve()
+    if target in (place.parent, place):
+        raise MocapError(
+            "holds the pictures of the take, which the masks would replace",
+            "give another folder", file=target, camera=view.camera.name,
+        )  # fmt: skip
 
 
 def _masks(

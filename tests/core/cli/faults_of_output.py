@@ -3,7 +3,9 @@
 from pathlib import Path
 
 from circumstances import ON_LINUX, ON_UNIX, bound_by_permissions, hardly_any_space
-from faults import Chapter, fit_words
+from faults import Chapter, fit_words, replace_text
+from silhouette_mocap.core.body.file import write_body
+from silhouette_mocap.core.body.templates import template
 from silhouette_mocap.core.results.folder import occupied
 
 OUTPUT = Chapter("The result")
@@ -87,3 +89,25 @@ def _(folder: Path):
 )
 def _(folder: Path):
     pass
+
+
+@OUTPUT.add(
+    "a result that would replace the take's body",
+    "small/body.npz: is the body that the take names",
+    "give another folder",
+    early=False,
+)
+def _(folder: Path):
+    write_body(folder / "body.npz", template("sixteen_segment"))
+    replace_text(folder / "take.toml", '"sixteen_segment"', '"body.npz"')
+    return ("fit", folder / "take.toml", "--out", folder)
+
+
+@OUTPUT.add(
+    "masks that would replace the masks they are made from",
+    "masks/cam_01, camera cam_01: holds the pictures of the take",
+    "give another folder",
+    early=False,
+)
+def _(folder: Path):
+    return ("masks", folder / "take.toml", "--out", folder / "masks")
