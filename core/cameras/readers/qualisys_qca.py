@@ -54,8 +54,12 @@ def read(path: Path) -> FileContent:
     Raises:
         MocapError: not XML, or a missing or impossible value.
     """
+    content = path.read_bytes()
+    if b"<!ENTITY" in content:
+        # a few lines of them can stand for gigabytes
+        raise MocapError("declares entities", "export it again from QTM", file=path)
     try:
-        root = ElementTree.fromstring(path.read_bytes())
+        root = ElementTree.fromstring(content)
     except (ElementTree.ParseError, LookupError, ValueError) as error:
         # the latter two: an encoding that is unknown or cannot be read
         raise MocapError(

@@ -35,6 +35,11 @@ def test_an_encoding_that_nobody_knows_is_refused(tmp_path, encoding):
     assert "is not complete XML" in refused(tmp_path / "a.qca.txt", text)
 
 
+def test_entities_are_refused_before_they_are_expanded(tmp_path):
+    text = "<!DOCTYPE c [<!ENTITY a 'lol'>]><calibration ><fov_video/>&a;</calibration>"
+    assert refused(tmp_path / "a.qca.txt", text) == "declares entities"
+
+
 def test_several_documents_in_one_yaml_are_refused_not_read_without_end(tmp_path):
     path = tmp_path / "cameras.yml"
     storage = cv2.FileStorage(str(path), cv2.FileStorage_WRITE)
