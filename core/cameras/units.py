@@ -56,8 +56,8 @@ class Placing:
             name = self.names[int(np.argmax(nearest))]
             raise MocapError(
                 f"stands {_shown(nearest.max() * metres)} from the nearest other camera",
-                f"calibrate it again, or take it out of the file and leave it out with "
-                f"--without {name}", file=file, camera=name,
+                f"calibrate it again, or leave it out with --without {name}",
+                file=file, camera=name,
             )  # fmt: skip
         if self.spread * metres < _NEAREST or self._typical() * metres > _FARTHEST:
             typical = self._typical()
