@@ -1,9 +1,8 @@
 """How long work tells its caller how far it is; the caller decides what to show."""
 
+import math
 from dataclasses import dataclass
 from typing import Protocol
-
-import numpy as np
 
 
 @dataclass(frozen=True)
@@ -27,8 +26,8 @@ class FrameFigures:
     @property
     def mean_iou(self) -> float:
         """Over the cameras that observed something; NaN where none did."""
-        known = [value for value in self.iou.values() if not np.isnan(value)]
-        return float(np.mean(known)) if known else float("nan")
+        known = [value for value in self.iou.values() if not math.isnan(value)]
+        return sum(known) / len(known) if known else math.nan
 
 
 class Progress(Protocol):

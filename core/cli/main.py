@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING, NoReturn
 
 from ..errors import MocapError
 from ..files import unwritable
-from .arguments import add_common, asked_progress
 from .bar import BarConsole, LineConsole
 from .console import PROGRAM, Console, PlainConsole
 from .events import JsonConsole
 from .failures import internal_fault
 from .interrupts import interruptible
 from .logs import Log
+from .options import add_common, asked_progress
 
 if TYPE_CHECKING:
     from ..motion.export_request import Exporter

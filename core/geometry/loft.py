@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
 
 from .arrays import frozen_array
 
@@ -63,6 +62,9 @@ class Profile:
         body = np.linspace(first, last, BODY_SAMPLES)
         start = first + (self.ends[0] - first) * np.sin(angles)
         end = last + (self.ends[1] - last) * np.sin(angles)
+        # takes half a second to load, which commands without a body do without
+        from scipy.interpolate import PchipInterpolator
+
         radii = PchipInterpolator(self.stations, self.radii)(body)
         caps = self.radii[0] * shrink, self.radii[-1] * shrink
         return np.r_[start[::-1], body, end], np.concatenate([caps[0][::-1], radii, caps[1]])
