@@ -84,12 +84,11 @@ def changed(path: Path, pattern: str, new: str) -> None:
 
 def of_camera(folder: Path, camera: str, key: str, value: str) -> None:
     """Gives one key of a camera in the TOML file another value."""
-    changed(
-        folder / TOML,
-        rf"(?s)(?<=\[{camera}\]\n)(.*?)\n{key} = [^\n]*",
-        re.search(rf"(?s)(?<=\[{camera}\]\n)(.*?)\n{key} = ", (folder / TOML).read_text())[1]
-        + f"\n{key} = {value}",
-    )
+    path = folder / TOML
+    before, head, after = path.read_text("utf-8").partition(f"[{camera}]\n")
+    after, count = re.subn(rf"(?m)^{key} = .*$", f"{key} = {value}", after, count=1)
+    assert count, f"{camera} has no {key}"
+    path.write_text(before + head + after, "utf-8")
 
 
 def moved(folder: Path, move: Callable[[Camera], np.ndarray], names: str = "cam_") -> None:

@@ -9,6 +9,7 @@ from fault_chapters import CHAPTERS
 from faults import Fault, met, table_row
 from silhouette_mocap.core import cli
 from silhouette_mocap.core.cli import main
+from silhouette_mocap.core.motion.motion import read_motion
 
 TABLE = (Path(cli.__file__).parent / "FAULTS.md").read_text("utf-8")
 FAULTS = [fault for chapter in CHAPTERS for fault in chapter.faults]
@@ -38,6 +39,12 @@ def test_the_table_holds_no_other_faults():
         len(told_here) + len(CHAPTERS)
     )
     assert len({fault.title for fault in FAULTS}) == len(FAULTS)
+
+
+def test_a_fault_in_the_middle_of_a_fit_keeps_the_finished_frames(small_take, tmp_path):
+    (late,) = (f for f in FAULTS if f.title == "a mask cut short in the middle of a fit")
+    met(late, small_take, tmp_path)
+    assert read_motion(tmp_path / "out" / "motion.npz").frames.tolist() == [0, 1]
 
 
 @pytest.fixture
