@@ -19,7 +19,7 @@ frames = [0, 1]
 initial_pose = { frames = [0, 1], kind = "A" }
 [cameras]
 calibration = "CALIBRATION"
-units = "m"
+units = "UNITS"
 up = "z"
 adjust = { cam_1 = { scale = 1.0, shift = [0.0, 0.0] } }
 [footage]
@@ -45,12 +45,14 @@ class Kind:
         targets: files of the take that are damaged.
         mutations: how.
         calibration: the name of the calibration.
+        units: of its lengths.
         mask: what follows the camera in the masks' names.
     """
 
     targets: tuple[str, ...]
     mutations: tuple[mutations.Mutation, ...]
     calibration: str = "calibration.toml"
+    units: str = "m"
     mask: str = "/{frame:06d}.png"
 
 
@@ -71,7 +73,7 @@ def _masks(suffix: str, damage: tuple[mutations.Mutation, ...]) -> Kind:
 KINDS = {
     "take.toml": Kind(("take.toml",), mutations.TEXT),
     "toml": Kind(("calibration.toml",), mutations.TEXT),
-    "qca": Kind(("camera.qca.txt",), mutations.XML, "camera.qca.txt"),
+    "qca": Kind(("camera.qca.txt",), mutations.XML, "camera.qca.txt", "mm"),
     "yml": Kind(("intri.yml", "extri.yml"), mutations.TEXT, "intri.yml"),
     "xml": Kind(("intri.xml", "extri.xml"), mutations.XML, "intri.xml"),
     "png": _masks(".png", mutations.PNG),
@@ -90,7 +92,7 @@ def write_takes(folder: Path) -> Path:
         _CALIBRATIONS[kind.calibration](place, cameras)
         _write_masks(place / "masks", kind.mask)
         text = TAKE.replace("CALIBRATION", kind.calibration).replace("MASK", kind.mask)
-        (place / "take.toml").write_text(text, "utf-8")
+        (place / "take.toml").write_text(text.replace("UNITS", kind.units), "utf-8")
     return folder
 
 
