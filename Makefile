@@ -63,6 +63,9 @@ endif
 fuzz: .venv/.ready ## 10,000 damaged takes, calibrations and masks through a real command
 	@cd tests && ../.venv/bin/python -m benchmarks.fuzz --cases 10000
 
+long-take: .venv/.ready ## Memory and disk over a fit of 10,000 frames
+	@mkdir -p out && cd tests && ../.venv/bin/python -m benchmarks.long_take --every 1000 --svg ../out/long_take.svg
+
 blender: .venv/.ready .venv-3.13/.installed ## A real Blender 5.2, cached outside the tree (needs root and a Debian-like machine)
 	@.ci/blender
 
