@@ -97,7 +97,7 @@ def fit(take: Take, request: FitRequest, progress: Progress) -> FitResult:
             begun with other inputs.
     """
     check_spared(take, request.out)
-    views = open_views(take, request.without, request.frames)
+    views = open_views(take, request.without, request.frames, progress)
     made_folder(request.out)
     inputs = fit_inputs(take, views, request.settings)
     journal = resumed(request.out, inputs, views) if request.resume else None

@@ -62,3 +62,6 @@ class Silence:
 
     def advance(self, frame: int | None, figures: FrameFigures | None = None) -> None:
         """Drops the frame."""
+
+
+SILENCE = Silence()

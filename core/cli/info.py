@@ -39,6 +39,7 @@ def run(arguments: argparse.Namespace, exporter: Exporter | None) -> int:
         initial_frames,
         EVALUATORS["native"],
         further=(lambda: check_formats(take.exports, exporter),),
+        progress=arguments.console,
     )
     check = checked(take, request)
     _tell(check)

@@ -25,8 +25,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace, exporter: Exporter | None) -> int:
     """Writes the masks and prints one line per camera."""
-    views = open_views(taken(arguments), arguments.without, arguments.frames)
-    qualities = write_take_masks(views, arguments.out, arguments.console)
+    console = arguments.console
+    views = open_views(taken(arguments), arguments.without, arguments.frames, console)
+    qualities = write_take_masks(views, arguments.out, console)
     say(
         f"{'camera':<16}{'frames':>8}{'empty':>8}{'coverage':>10}{'specks':>8}{'contrast':>10}"
         f"{'flicker':>9}"

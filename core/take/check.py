@@ -15,6 +15,7 @@ from ..fitting.hierarchical import EvaluatorFactory
 from ..initialisation.plausibility import check_height
 from ..initialisation.standing import body_centre, standing_height
 from ..native.library import load
+from ..progress import SILENCE, Progress
 from ..silhouettes.silhouette import Silhouette
 from .camera_facts import CameraFacts, Performer, camera_facts, units_in_words
 from .estimate import Estimate, Trial, estimated
@@ -22,6 +23,9 @@ from .first_look import check_first_look
 from .footage_check import FootageFacts, checked_footage
 from .take import Take
 from .views import Views, open_views
+
+_STEPS = 3
+"""First pictures, footage, trial."""
 
 
 @dataclass(frozen=True)
@@ -34,12 +38,14 @@ class CheckRequest:
         make_evaluator: renders and compares in the trial.
         further: more checks, which raise MocapError.
         seconds: how long to read footage.
+        progress: told of each step.
     """
 
     initial_frames: Callable[[Take, tuple[int, int]], Sequence[int]]
     make_evaluator: EvaluatorFactory
     further: Sequence[Callable[[], object]] = ()
     seconds: float = 8.0
+    progress: Progress = SILENCE
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,7 +117,8 @@ def checked(take: Take, request: CheckRequest) -> TakeCheck:
 
 
 def _checked_views(take: Take, request: CheckRequest, faults: _Faults) -> TakeCheck:
-    views = _opened(take, faults)
+    views, progress = _opened(take, faults, request.progress), request.progress
+    progress.begin("check", _STEPS)
     found = TakeCheck(take, views.frames, _units(take, views), notes=views.notes)
     start, silhouettes, performer = 0, (), None
     with faults.noted():
@@ -121,7 +128,9 @@ def _checked_views(take: Take, request: CheckRequest, faults: _Faults) -> TakeCh
         silhouettes = seen[start]
         found = replace(found, notes=(*found.notes, *check_first_look(take, views, seen)))
         performer = _performer(take, views, silhouettes)
+    progress.advance(None)
     footage = checked_footage(views, request.seconds)
+    progress.advance(None)
     for fault in footage.faults:
         faults.add(fault)
     estimate = None
@@ -129,6 +138,7 @@ def _checked_views(take: Take, request: CheckRequest, faults: _Faults) -> TakeCh
         trial = Trial(take, views, start, silhouettes, performer, request.make_evaluator)
         with faults.noted():
             estimate = estimated(trial, footage.seconds)
+    progress.advance(None)
     return replace(
         found,
         cameras=tuple(camera_facts(view, performer, take.floor) for view in views.views),
@@ -139,7 +149,7 @@ def _checked_views(take: Take, request: CheckRequest, faults: _Faults) -> TakeCh
     )
 
 
-def _opened(take: Take, faults: _Faults) -> Views:
+def _opened(take: Take, faults: _Faults, progress: Progress) -> Views:
     """The views of the cameras without a fault; ``faults`` gets one for each of the others.
 
     Raises:
@@ -148,7 +158,7 @@ def _opened(take: Take, faults: _Faults) -> Views:
     without: list[str] = []
     while True:
         try:
-            return open_views(take, without)
+            return open_views(take, without, progress=progress)
         except MocapError as error:
             if error.camera is None or error.camera in without:
                 raise

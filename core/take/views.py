@@ -17,6 +17,8 @@ from ..errors import MocapError
 from ..footage.footage import Footage, open_footage
 from ..footage.patterns import for_camera
 from ..footage.pictures import colour_picture, read_picture
+from ..footage.video import Video
+from ..progress import SILENCE, Progress
 from ..silhouettes.cleaning import Cleaning
 from ..silhouettes.difference import Difference, DifferenceSettings
 from ..silhouettes.masks import ReadyMasks, mask_from_picture
@@ -112,7 +114,10 @@ class Views:
 
 
 def open_views(
-    take: Take, without: Sequence[str] = (), frames: tuple[int | None, int | None] = (None, None)
+    take: Take,
+    without: Sequence[str] = (),
+    frames: tuple[int | None, int | None] = (None, None),
+    progress: Progress = SILENCE,
 ) -> Views:
     """The views of ``take``, ready to be read at full resolution.
 
@@ -120,6 +125,7 @@ def open_views(
         take: the take.
         without: names of cameras to leave out.
         frames: first and last frame, inclusive, that narrow the take's; None leaves an end.
+        progress: told while the frames of videos are counted.
 
     Raises:
         MocapError: calibration or footage that is missing or does not fit, an unknown camera, or
@@ -139,7 +145,10 @@ def open_views(
     cameras = calibration.cameras
     views = tuple(_view(take, camera, footage[camera.name]) for camera in cameras)
     notes = [*calibration.notes, *_opposite_notes(cameras), *_rate_notes(take, footage)]
-    return Views(views, span or _narrowed(take, _common(take, footage), frames), tuple(notes))
+    if span is None:
+        _count(footage, progress)
+        span = _narrowed(take, _common(take, footage), frames)
+    return Views(views, span, tuple(notes))
 
 
 def camera_names(take: Take) -> tuple[str, ...]:
@@ -257,6 +266,17 @@ EXTRACTORS: dict[str, Callable[[Plate, Table], Extractor]] = {
     "statistics": lambda plate, table: Statistics(plate, table.settings(StatisticsSettings)),
     "difference": lambda plate, table: Difference(plate, table.settings(DifferenceSettings)),
 }
+
+
+def _count(footage: dict[str, Footage], progress: Progress) -> None:
+    """Finds the ends of the videos, all at once, as each has to be decoded for it."""
+    videos = [f for f in footage.values() if isinstance(f, Video)]
+    if not videos:
+        return
+    progress.begin("count frames", len(videos))
+    with ThreadPoolExecutor(len(videos)) as pool:
+        for _ in pool.map(lambda video: video.frames, videos):
+            progress.advance(None)
 
 
 def _common(take: Take, footage: dict[str, Footage]) -> tuple[int, int]:

@@ -30,7 +30,7 @@ def test_cameras_units_time_memory_and_disk_are_told(small_take, capsys):
 def test_the_sheet_is_written_even_if_something_is_at_fault(folder, tmp_path, capsys):
     sheet = tmp_path / "sheet.html"
     (folder / "masks" / "cam_02" / "000001.png").write_bytes(b"")
-    assert main(["info", str(folder / "take.toml"), "--sheet", str(sheet)]) == 2
+    assert main(["info", str(folder / "take.toml"), "--sheet", str(sheet), "--progress=none"]) == 2
     shown = capsys.readouterr()
     assert shown.err.count("\n") == 1 and f"wrote {sheet}" in shown.out
     assert "cam_02, frame 1" in sheet.read_text("utf-8")

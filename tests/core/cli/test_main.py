@@ -154,7 +154,7 @@ def test_info_names_everything_that_is_missing(small_take, tmp_path, capsys):
 def test_info_names_every_camera_that_is_missing(small_take, tmp_path, capsys):
     folder = tmp_path / "session" / "small"
     shutil.copytree(small_take.parent, folder, ignore=shutil.ignore_patterns("cam_0?"))
-    assert main(["info", str(folder / "take.toml")]) == 2
+    assert main(["info", str(folder / "take.toml"), "--progress=none"]) == 2
     error = capsys.readouterr().err
     assert [error.count(f"camera cam_0{i}: ") for i in range(1, 6)] == [1] * 5
 
@@ -162,7 +162,7 @@ def test_info_names_every_camera_that_is_missing(small_take, tmp_path, capsys):
 def test_info_tells_of_the_other_cameras_too(small_take, tmp_path, capsys):
     folder = shutil.copytree(small_take.parent, tmp_path / "session" / "small")
     (folder / "masks" / "cam_02" / "000003.png").unlink()
-    assert main(["info", str(folder / "take.toml")]) == 2
+    assert main(["info", str(folder / "take.toml"), "--progress=none"]) == 2
     shown = capsys.readouterr()
     assert "cam_02, frame 3: missing" in shown.err and shown.err.count("\n") == 1
     assert "footage     cam_03: frames 0 to 3" in shown.out
@@ -187,7 +187,7 @@ def test_output_that_nobody_reads_any_more_is_no_error(small_take):
     reader, writer = os.pipe()
     os.close(reader)
     finished = subprocess.run(
-        [sys.executable, "-c", program, "info", str(small_take)],
+        [sys.executable, "-c", program, "info", str(small_take), "--progress=none"],
         stdout=writer, stderr=subprocess.PIPE, text=True,
         env={**os.environ, "PYTHONUNBUFFERED": "1"},
     )  # fmt: skip
