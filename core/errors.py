@@ -2,6 +2,8 @@
 
 from pathlib import Path
 
+_LONGEST_END = 300
+
 
 class MocapError(Exception):
     """A fault in the input, shown verbatim to the user as one line.
@@ -26,10 +28,10 @@ class MocapError(Exception):
         camera: str | None = None,
         frame: int | None = None,
     ):
-        self.problem = problem
+        self.problem = _readable(problem)
         self.remedy = remedy
         self.file = None if file is None else Path(file)
-        self.camera = camera
+        self.camera = None if camera is None else _readable(camera)
         self.frame = frame
         super().__init__(self._line())
 
@@ -42,3 +44,10 @@ class MocapError(Exception):
         prefix = ", ".join(part for part in place if part)
         line = f"{prefix}: {self.problem}" if prefix else self.problem
         return f"{line}; {self.remedy}" if self.remedy else line
+
+
+def _readable(text: str) -> str:
+    """``text`` without its middle, where damage has made it too long for a line."""
+    if len(text) <= 2 * _LONGEST_END:
+        return text
+    return f"{text[:_LONGEST_END]} … {text[-_LONGEST_END:]}"
