@@ -11,7 +11,7 @@ ROOT = Path(__file__).resolve().parents[1]
 ORDER = (
     "errors", "files", "toml", "progress", "geometry", "pages", "cameras", "footage",
     "silhouettes", "body", "native", "energy", "rendering", "optimisers", "particles", "fitting",
-    "initialisation", "motion", "take", "results", "distributed", "pipeline", "cli",
+    "initialisation", "motion", "take", "checking", "results", "distributed", "pipeline", "cli",
 )  # fmt: skip
 BLENDER = frozenset(("bpy", "bmesh", "mathutils", "gpu", "bl_ui", "bpy_extras", "addon_utils"))
 

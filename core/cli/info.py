@@ -3,12 +3,9 @@
 import argparse
 from pathlib import Path
 
-from ..motion.export_request import Exporter
-from ..pipeline import EVALUATORS, initial_frames
-from ..results.exporting import check_formats
-from ..take.check import CheckRequest, TakeCheck, checked
-from ..take.check_sheet import write_check_sheet
-from ..take.check_words import (
+from ..checking.check import CheckRequest, TakeCheck, checked
+from ..checking.sheet import write_check_sheet
+from ..checking.words import (
     CAMERA_HEADINGS,
     Facts,
     camera_words,
@@ -16,6 +13,9 @@ from ..take.check_words import (
     footage_words,
     take_words,
 )
+from ..motion.export_request import Exporter
+from ..pipeline import EVALUATORS, initial_frames
+from ..results.exporting import check_formats
 from .arguments import add_take, taken
 from .console import say
 

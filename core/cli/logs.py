@@ -108,7 +108,7 @@ def _own_handlers(logger: logging.Logger) -> Iterator[None]:
 
 
 def _facts() -> Iterator[str]:
-    from ..motion.report import versions  # takes a while, and few ask for it
+    from ..results.report import versions  # takes a while, and few ask for it
 
     yield f"process {os.getpid()} in {os.getcwd()}"
     yield f"{platform.platform()}, {os.cpu_count()} processors"

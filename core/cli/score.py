@@ -5,8 +5,8 @@ from pathlib import Path
 
 from ..motion.export_request import Exporter
 from ..motion.point_track import read_point_track
-from ..motion.report import write_report
 from ..motion.scoring import Score, Spread, aligned_in_time, aligned_rigidly, score
+from ..results.report import write_report
 from .arguments import frame_range
 from .console import say
 from .numbers import shown

@@ -12,9 +12,9 @@ import numpy as np
 
 from ..errors import MocapError
 from ..footage.patterns import for_camera
-from ..motion.report import versions
 from ..take.take import Take
 from ..take.views import Views
+from .report import versions
 
 Inputs = dict[str, str]
 """Dotted key -> value as JSON, or the digest of a file."""

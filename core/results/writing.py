@@ -16,14 +16,14 @@ from ..footage.video_writing import write_video
 from ..motion.motion import Motion, read_motion, write_motion
 from ..motion.point_track import PointTrack, read_point_track
 from ..motion.recording import recorded
-from ..motion.report import fit_quality, versions, write_report
-from ..motion.report_page import write_report_page
 from ..motion.scoring import score
 from ..progress import Progress
 from ..take.take import EXPORTS, Take
 from ..take.views import Views
 from .fingerprint import Inputs, check_same, stamp_digests
 from .journal import UNFINISHED, Journal
+from .report import fit_quality, versions, write_report
+from .report_page import write_report_page
 
 MOTION, BODY, REPORT, PAGE = "motion.npz", "body.npz", "report.json", "report.html"
 OVERLAY = "overlay.mp4"

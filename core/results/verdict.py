@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..motion.motion import Motion
 from ..pages.wording import counted, decimal, listed, spans, whole
-from .motion import Motion
 from .worst_frames import mean_iou
 
 _GOOD_IOU, _FAIR_IOU = 0.8, 0.6

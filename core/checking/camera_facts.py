@@ -7,7 +7,7 @@ import numpy as np
 from ..cameras.arrangement import millimetres_per_pixel
 from ..cameras.calibration import Calibration
 from ..cameras.camera import Camera
-from .views import View
+from ..take.views import View
 
 UNITS = {"m": "metres", "cm": "centimetres", "mm": "millimetres"}
 

@@ -17,7 +17,7 @@ from ..errors import MocapError
 from ..footage.video import Video
 from ..silhouettes.masks import ReadyMasks
 from ..silhouettes.silhouette import Silhouette
-from .views import View, Views
+from ..take.views import View, Views
 
 _EXTRACTING_SHARE = 0.6
 

@@ -13,7 +13,7 @@ import scipy
 
 from ..files import whole_file
 from ..fitting.tracking import FrameFit
-from .motion import Motion
+from ..motion.motion import Motion
 
 
 def fit_quality(motion: Motion, fits: Sequence[FrameFit]) -> dict:

@@ -7,13 +7,13 @@ from urllib.parse import quote
 
 import numpy as np
 
+from ..motion.motion import Motion
+from ..motion.overlay import BOTH, MODEL_ONLY, OBSERVED_ONLY
 from ..pages.chart import Series, swatch
 from ..pages.document import Page, Section, bullets, jpeg_picture, paragraphs, tiles, write_page
 from ..pages.markup import Html, element, joined
 from ..pages.table import facts, table
 from ..pages.wording import counted, data_size, decimal, duration, whole
-from .motion import Motion
-from .overlay import BOTH, MODEL_ONLY, OBSERVED_ONLY
 from .report_charts import motion_charts, spoken
 from .verdict import Verdict, verdict
 from .worst_frames import BadFrame, worst_frames

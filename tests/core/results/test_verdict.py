@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from motion_made_up import motion_of, report_of
-from silhouette_mocap.core.motion.verdict import verdict
+from silhouette_mocap.core.results.verdict import verdict
 
 
 def judged(iou, lost=(), count=100, **report):

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..fitting.scores import LIMB_NAMES
-from .motion import Motion
+from ..motion.motion import Motion
 
 _NEIGHBOURHOOD = 24
 """No two frames are nearer to each other than this fraction of the motion."""

@@ -5,11 +5,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..fitting.scores import LIMB_NAMES, limb_of
+from ..motion.motion import Motion
 from ..pages.axis import value_axis
 from ..pages.chart import Chart, Scale, Series, chart_figure
 from ..pages.heat import Heat, heat_figure
 from ..pages.markup import Html, joined
-from .motion import Motion
 from .worst_frames import mean_iou
 
 # other than the first cameras' colours, lest a limb be taken for a camera

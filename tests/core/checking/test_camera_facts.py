@@ -7,7 +7,7 @@ import pytest
 from silhouette_mocap.core.cameras.calibration import Calibration
 from silhouette_mocap.core.cameras.camera import Camera
 from silhouette_mocap.core.cameras.presets import look_at
-from silhouette_mocap.core.take.camera_facts import Performer, camera_facts, units_in_words
+from silhouette_mocap.core.checking.camera_facts import Performer, camera_facts, units_in_words
 from silhouette_mocap.core.take.reduction import Reduction
 
 MATRIX = np.array([[500.0, 0, 319.5], [0, 500.0, 239.5], [0, 0, 1]])

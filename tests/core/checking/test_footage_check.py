@@ -6,8 +6,8 @@ import shutil
 import cv2
 import numpy as np
 import pytest
+from silhouette_mocap.core.checking.footage_check import checked_footage, coarse_to_fine
 from silhouette_mocap.core.footage.video_writing import write_video
-from silhouette_mocap.core.take.footage_check import checked_footage, coarse_to_fine
 from silhouette_mocap.core.take.reading import read_take
 from silhouette_mocap.core.take.views import open_views
 

@@ -22,9 +22,9 @@ from ..initialisation.first_pose import placed
 from ..initialisation.pose_kinds import pose_of_kind
 from ..motion.overlay import Tile, overlay_picture
 from ..silhouettes.silhouette import Silhouette
+from ..take.take import Take
+from ..take.views import Views
 from .camera_facts import Performer
-from .take import Take
-from .views import Views
 
 _ROUNDS_PER_FRAME = 1.8
 _ROUNDS_OF_FIRST_POSE = 14.0

@@ -17,12 +17,12 @@ from ..initialisation.standing import body_centre, standing_height
 from ..native.library import load
 from ..progress import SILENCE, Progress
 from ..silhouettes.silhouette import Silhouette
+from ..take.first_look import check_first_look
+from ..take.take import Take
+from ..take.views import Views, open_views
 from .camera_facts import CameraFacts, Performer, camera_facts, units_in_words
 from .estimate import Estimate, Trial, estimated
-from .first_look import check_first_look
 from .footage_check import FootageFacts, checked_footage
-from .take import Take
-from .views import Views, open_views
 
 _STEPS = 3
 """First pictures, footage, trial."""

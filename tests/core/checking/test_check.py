@@ -10,13 +10,13 @@ import cv2
 import numpy as np
 import pytest
 from silhouette_mocap.core.cameras.arrangement import millimetres_per_pixel
+from silhouette_mocap.core.checking.check import CheckRequest, checked
+from silhouette_mocap.core.checking.estimate import Estimate
+from silhouette_mocap.core.checking.sheet import write_check_sheet
+from silhouette_mocap.core.checking.words import estimate_words, readiness, take_words
 from silhouette_mocap.core.errors import MocapError
 from silhouette_mocap.core.pipeline import initial_frames
 from silhouette_mocap.core.rendering.native import NativeEvaluator
-from silhouette_mocap.core.take.check import CheckRequest, checked
-from silhouette_mocap.core.take.check_sheet import write_check_sheet
-from silhouette_mocap.core.take.check_words import estimate_words, readiness, take_words
-from silhouette_mocap.core.take.estimate import Estimate
 from silhouette_mocap.core.take.reading import read_take
 from silhouette_mocap.core.take.views import open_views
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from motion_made_up import motion_of
-from silhouette_mocap.core.motion.worst_frames import mean_iou, worst_frames
+from silhouette_mocap.core.results.worst_frames import mean_iou, worst_frames
 
 
 def test_worst_frames_come_worst_first_and_are_no_neighbours():

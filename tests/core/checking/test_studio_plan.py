@@ -5,8 +5,8 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 from silhouette_mocap.core.cameras.presets import Ring, ring
-from silhouette_mocap.core.take.camera_facts import CameraFacts, Performer
-from silhouette_mocap.core.take.studio_plan import (
+from silhouette_mocap.core.checking.camera_facts import CameraFacts, Performer
+from silhouette_mocap.core.checking.studio_plan import (
     Studio,
     plan_from_above,
     pyramid,

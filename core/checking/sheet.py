@@ -12,7 +12,9 @@ from ..pages.markup import Html, element, joined
 from ..pages.table import facts, table
 from ..pages.wording import data_size, decimal, duration, whole
 from .check import TakeCheck
-from .check_words import (
+from .footage_check import FootageFacts
+from .studio_plan import Studio, plan_from_above, view_from_the_side
+from .words import (
     CAMERA_HEADINGS,
     camera_words,
     estimate_words,
@@ -24,8 +26,6 @@ from .check_words import (
     size_words,
     take_words,
 )
-from .footage_check import FootageFacts
-from .studio_plan import Studio, plan_from_above, view_from_the_side
 
 _THUMBNAIL_PX = 480
 

@@ -6,7 +6,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 from motion_made_up import motion_of, report_of
-from silhouette_mocap.core.motion.report_page import write_report_page
+from silhouette_mocap.core.results.report_page import write_report_page
 
 PICTURE = b"\xff\xd8 a picture"
 

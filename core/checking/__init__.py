@@ -1,0 +1,1 @@
+"""A take looked at before it is fitted: facts, faults, what a fit will cost."""
