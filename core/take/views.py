@@ -4,6 +4,7 @@ import logging
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -86,8 +87,12 @@ class Views:
 
     def silhouettes(self, frame: int) -> tuple[Silhouette, ...]:
         """What the cameras see in ``frame``; read side by side, as each has its own footage."""
-        with ThreadPoolExecutor(len(self.views)) as pool:
-            return tuple(pool.map(lambda view: view.silhouette(frame), self.views))
+        return tuple(self._readers.map(lambda view: view.silhouette(frame), self.views))
+
+    @cached_property
+    def _readers(self) -> ThreadPoolExecutor:
+        """Threads that stay: new ones for every frame would scatter their memory."""
+        return ThreadPoolExecutor(len(self.views))
 
     def stamps(self, frame: int) -> np.ndarray:
         """(V, 2) size and time of change of the files that ``frame`` is read from."""
