@@ -9,7 +9,7 @@ KERNEL := $(wildcard core/native/build.py core/native/*.c core/native/*.h)
 CORE_TESTS := tests/core tests/test_layers.py
 PROTOTYPES ?= $(wildcard ../shared/prototypes)
 
-.PHONY: help env demo demo-real test lint test-core test-addon bench fuzz long-take blender clean
+.PHONY: help env demo demo-real test lint test-core test-command test-addon bench fuzz long-take blender clean
 
 help: ## This list
 	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /make \1\t/' | expand -t 18
@@ -39,7 +39,7 @@ demo-real: .venv/.ready ## Fetch the real four-camera recording and fit it into 
 	@$(MOCAP) fit sample_scenes/balance/take.toml --out out/balance
 	@.venv/bin/python .ci/results.py out/balance
 
-test: env lint test-core test-addon ## Linters and all tests, on Python 3.11 and 3.13 and both Blenders
+test: env lint test-core test-command test-addon ## Linters and all tests, on Python 3.11 and 3.13 and both Blenders
 
 lint: .venv/.installed
 	.venv/bin/ruff check .
@@ -49,6 +49,10 @@ lint: .venv/.installed
 test-core: env
 	.venv/bin/python -m pytest -q -n 2 --dist worksteal $(CORE_TESTS)
 	.venv-3.13/bin/python -m pytest -q -n 2 --dist worksteal $(CORE_TESTS)
+
+test-command: env
+	.venv/bin/python -m pytest -q -n 2 --dist worksteal tests/command
+	.venv-3.13/bin/python -m pytest -q -n 2 --dist worksteal tests/command
 
 test-addon: env
 	.venv/bin/python -m pytest -q -n 2 tests/addon

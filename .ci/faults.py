@@ -8,7 +8,7 @@ import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-sys.path[:0] = [str(ROOT / "tests"), str(ROOT / "tests/core/cli")]
+sys.path[:0] = [str(ROOT / "tests"), str(ROOT / "tests/command")]
 
 from fault_chapters import CHAPTERS  # noqa: E402
 from faults import Chapter, met, table_row  # noqa: E402

@@ -110,7 +110,7 @@ def test_a_decimal_comma_of_the_system_changes_no_result(folder, tmp_path):
     )
     if made.returncode:
         pytest.skip("the system does not know German")
-    tests = str(Path(__file__).resolve().parents[2])
+    tests = str(Path(__file__).resolve().parents[1])
     found = {}
     for point, language in ((".", "C.UTF-8"), (",", "de_DE.UTF-8")):
         out = tmp_path / language
