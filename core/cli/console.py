@@ -6,6 +6,7 @@ of consoles differ in what they show meanwhile.
 
 import io
 import logging
+import os
 import sys
 import time
 from collections.abc import Sequence
@@ -15,6 +16,7 @@ from pathlib import Path
 from typing import TextIO
 
 from ..errors import MocapError
+from ..files import unwritable
 from ..progress import FrameFigures
 
 PROGRAM = "silhouette-mocap"
@@ -25,15 +27,45 @@ _log, _shown = logging.getLogger(__name__), logging.getLogger(SHOWN)
 
 
 def say(line: str = "") -> None:
-    """Writes a line of the result."""
+    """Writes a line of the result; work goes on where nobody reads it any more.
+
+    Raises:
+        MocapError: the disk is full.
+    """
     _shown.info("%s", line)
     if sys.stdout is None:
         return
     encoding = sys.stdout.encoding or "utf-8"
     # names of files may hold what a terminal has no letter for
     shown = line.encode(encoding, "backslashreplace").decode(encoding)
-    sys.stdout.write(shown + "\n")
-    sys.stdout.flush()
+    try:
+        sys.stdout.write(shown + "\n")
+        sys.stdout.flush()
+    except BrokenPipeError:
+        # whoever read the output has enough of it
+        discard(sys.stdout)
+    except OSError as error:
+        discard(sys.stdout)
+        raise unwritable("standard output", error) from error
+
+
+def discard(stream: TextIO) -> None:
+    """Lets ``stream``, which cannot be written, lead nowhere, so that later flushes succeed."""
+    with suppress(OSError, ValueError):
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, stream.fileno())
+        os.close(nowhere)
+
+
+def let_go() -> None:
+    """Writes out what the standard streams hold; Python would end with 120 where that fails."""
+    for stream in (sys.stdout, sys.stderr):
+        if stream is None:
+            continue
+        try:
+            stream.flush()
+        except (OSError, ValueError):
+            discard(stream)
 
 
 @dataclass

@@ -12,6 +12,7 @@ import sys
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
+from typing import TextIO
 
 from ..files import made_folder, unwritable
 from .console import SHOWN, Console
@@ -129,9 +130,10 @@ def _native_messages_into(path: Path) -> Iterator[None]:
         return
     own = sys.stderr
     text = {"encoding": own.encoding, "errors": own.errors, "buffering": 1}
-    with open(kept, "w", **text) as stream, path.open("ab") as file:
+    with _kept_open(open(kept, "w", **text)) as stream, path.open("ab") as file:
         if own is sys.__stderr__:
-            own.flush()
+            with suppress(OSError, ValueError):
+                own.flush()
             sys.stderr = stream
         os.dup2(file.fileno(), _STDERR)
         try:
@@ -139,3 +141,13 @@ def _native_messages_into(path: Path) -> Iterator[None]:
         finally:
             os.dup2(kept, _STDERR)
             sys.stderr = own
+
+
+@contextmanager
+def _kept_open(stream: TextIO) -> Iterator[TextIO]:
+    """Closes ``stream`` afterwards, even where what it holds cannot be written any more."""
+    try:
+        yield stream
+    finally:
+        with suppress(OSError, ValueError):
+            stream.close()

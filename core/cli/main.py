@@ -4,7 +4,6 @@ import argparse
 import errno
 import logging
 import os
-import sys
 from collections.abc import Callable, Sequence
 from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
@@ -13,7 +12,7 @@ from typing import TYPE_CHECKING, NoReturn
 from ..errors import MocapError
 from ..files import unwritable
 from .bar import BarConsole, LineConsole
-from .console import PROGRAM, Console, PlainConsole
+from .console import PROGRAM, Console, PlainConsole, let_go
 from .events import JsonConsole
 from .failures import internal_fault
 from .interrupts import interruptible
@@ -63,6 +62,7 @@ def main(argv: Sequence[str], exporter: "Exporter | None" = None) -> int:
 
         code = _exit_code(command, console)
         console.end(code)
+    let_go()
     return code
 
 
@@ -79,10 +79,6 @@ def _exit_code(command: Callable[[], int], console: Console) -> int:
     except KeyboardInterrupt:
         console.fault(MocapError("interrupted"), INTERRUPTED)
         return INTERRUPTED
-    except BrokenPipeError:
-        # whoever read the output has enough of it
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return DONE
     except Exception as error:
         if isinstance(error, OSError) and error.errno in _DISK_FAULTS:
             console.fault(unwritable(error.filename or "the disk", error), INPUT)
