@@ -2,6 +2,7 @@
 
 import errno
 import logging
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -14,6 +15,7 @@ _REMEDIES = {
     errno.ENAMETOOLONG: "give a shorter path",
 }
 _LONGEST_STEM = 100
+_BEGIN_BYTES = 4096
 _log = logging.getLogger(__name__)
 
 
@@ -50,6 +52,29 @@ def made_folder(path: Path) -> Path:
     except OSError as error:
         raise unwritable(path, error) from error
     return path
+
+
+def check_replaceable(path: Path, ours: re.Pattern[bytes]) -> None:
+    """Refuses to write where a file of the user's own would be lost, be it a take or a picture.
+
+    Args:
+        path: where a file is about to be written.
+        ours: what files of that kind begin with, within their first 4 KB; empty ones may go, too.
+
+    Raises:
+        MocapError: a file of another kind is there.
+    """
+    try:
+        if not path.is_file():
+            return
+        with path.open("rb") as file:
+            begin = file.read(_BEGIN_BYTES)
+    except OSError:
+        # writing will tell
+        return
+    if begin and not ours.match(begin):
+        problem = "is there already, and is not what would be written there"
+        raise MocapError(problem, "give another path", file=path)
 
 
 def unwritable(path: Path | str, error: OSError) -> MocapError:

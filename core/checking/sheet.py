@@ -1,5 +1,6 @@
 """The sheet of a take: what its cameras see and how they stand, on one page."""
 
+import re
 from pathlib import Path
 
 import cv2
@@ -28,6 +29,9 @@ from .words import (
 )
 
 _THUMBNAIL_PX = 480
+_KIND = "take sheet"
+SHEET = re.compile(f"<!DOCTYPE html>.*· {_KIND}</title>".encode(), re.DOTALL)
+"""What every sheet begins with."""
 
 
 def write_check_sheet(path: Path, check: TakeCheck) -> None:
@@ -47,7 +51,7 @@ def write_check_sheet(path: Path, check: TakeCheck) -> None:
             facts(estimate_words(check.estimate)) if check.estimate else Html(),
         ),
     )  # fmt: skip
-    write_page(path, Page("take sheet", check.take.name, _summary(check), sections))
+    write_page(path, Page(_KIND, check.take.name, _summary(check), sections))
 
 
 def _summary(check: TakeCheck) -> Html:

@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 
 from ..checking.check import CheckRequest, TakeCheck, checked
-from ..checking.sheet import write_check_sheet
+from ..checking.sheet import SHEET, write_check_sheet
 from ..checking.words import (
     CAMERA_HEADINGS,
     Facts,
@@ -13,6 +13,7 @@ from ..checking.words import (
     footage_words,
     take_words,
 )
+from ..files import check_replaceable
 from ..motion.export_request import Exporter
 from ..pipeline import EVALUATORS, initial_frames
 from ..results.exporting import check_formats
@@ -34,6 +35,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace, exporter: Exporter | None) -> int:
     """Checks part by part; a fault in one does not hide those in others."""
+    if arguments.sheet is not None:
+        check_replaceable(arguments.sheet, SHEET)
     take = taken(arguments)
     request = CheckRequest(
         initial_frames,

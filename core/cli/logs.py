@@ -8,19 +8,21 @@ import argparse
 import logging
 import os
 import platform
+import re
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import TextIO
 
-from ..files import made_folder, unwritable
+from ..files import check_replaceable, made_folder, unwritable
 from .console import SHOWN, Console
 
 PACKAGE = __name__.removesuffix(".core.cli.logs")
 _LOGGERS = (PACKAGE, "py.warnings")
 _STDERR = 2
 _LINE = "%(asctime)s %(levelname)-7s %(name)s: %(message)s"
+_OURS = re.compile(rb"\d{4}-\d\d-\d\d \d\d:\d\d:\d\d,\d{3} [A-Z]+ +\S+: ")
 _log = logging.getLogger(__name__)
 
 
@@ -85,6 +87,7 @@ class _File(logging.FileHandler):
 
 
 def _opened(path: Path) -> _File:
+    check_replaceable(path, _OURS)
     made_folder(path.parent)
     try:
         handler = _File(path, encoding="utf-8", errors="backslashreplace")

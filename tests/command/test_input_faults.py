@@ -110,3 +110,25 @@ def test_a_finished_fit_is_told_again_when_resumed(quick_start, small_take, tmp_
     first = capsys.readouterr().out
     assert main([*words, "--resume"]) == 0
     assert capsys.readouterr().out == first
+
+
+@pytest.mark.parametrize("option", ["--sheet", "--log-file"])
+@pytest.mark.parametrize("name", ["take.toml", "calibration.toml", "masks/cam_01/000000.png"])
+def test_files_of_other_kinds_are_not_written_over(option, name, small_take, tmp_path, fault):
+    folder = shutil.copytree(small_take.parent, tmp_path / "session" / "small")
+    before = (folder / name).read_bytes()
+    line = fault("info", folder / "take.toml", option, folder / name)
+    assert f"{folder / name}: is there already" in line and "give another path" in line
+    assert (folder / name).read_bytes() == before
+
+
+@pytest.mark.parametrize("option", ["--sheet", "--log-file"])
+@pytest.mark.parametrize("before", [None, b""])
+def test_earlier_results_are_written_over(option, before, small_take, tmp_path):
+    path = tmp_path / "page.html"
+    if before is not None:
+        path.write_bytes(before)
+    words = ["info", str(small_take), option, str(path)]
+    assert main(words) == 0
+    first = path.stat().st_size
+    assert main(words) == 0 and path.stat().st_size >= first
