@@ -7,6 +7,7 @@ import os
 from collections.abc import Callable, Sequence
 from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
 from ..errors import MocapError
@@ -111,10 +112,21 @@ def build_parser(named: str | None = None) -> argparse.ArgumentParser:
 
 
 class _Parser(argparse.ArgumentParser):
-    """Tells a wrong word in one line."""
+    """Tells a wrong word in one line, an empty path among them."""
+
+    def __init__(self, *words, **settings):
+        super().__init__(*words, **settings)
+        self.register("type", Path, _path)
 
     def error(self, message: str) -> NoReturn:
         raise MocapError(message, f"see {self.prog} --help")
+
+
+def _path(text: str) -> Path:
+    """The path; an empty one would be the current folder."""
+    if not text.strip():
+        raise argparse.ArgumentTypeError("expected a path, got nothing")
+    return Path(text)
 
 
 def _console(progress: str | None) -> Console:

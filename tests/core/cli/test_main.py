@@ -173,3 +173,12 @@ def test_masks_are_written_with_a_quality_line_per_camera(small_take, tmp_path, 
     shown = capsys.readouterr()
     assert shown.out.count("cam_0") == 5 and not shown.err
     assert len(list(tmp_path.glob("cam_0?/00000?.png"))) == 20
+
+
+@pytest.mark.parametrize("option", ["--out", "--log-file", "--root"])
+def test_no_path_is_no_path(option, small_take, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(["masks", str(small_take), "--out", str(tmp_path / "masks"), option, ""]) == 2
+    error = capsys.readouterr().err
+    assert f"argument {option}: expected a path, got nothing" in error and error.count("\n") == 1
+    assert not list(tmp_path.iterdir())
