@@ -19,7 +19,7 @@ from ..progress import SILENCE, Progress
 from ..silhouettes.silhouette import Silhouette
 from ..take.first_look import check_first_look
 from ..take.take import Take
-from ..take.views import Views, open_views
+from ..take.views import TooFewCameras, Views, open_views
 from .camera_facts import CameraFacts, Performer, camera_facts, units_in_words
 from .estimate import Estimate, Trial, estimated
 from .footage_check import FootageFacts, checked_footage
@@ -118,13 +118,14 @@ def checked(take: Take, request: CheckRequest) -> TakeCheck:
 
 def _checked_views(take: Take, request: CheckRequest, faults: _Faults) -> TakeCheck:
     views, progress = _opened(take, faults, request.progress), request.progress
+    if views is None:
+        return TakeCheck(take)
     progress.begin("check", _STEPS)
     found = TakeCheck(take, views.frames, _units(take, views), notes=views.notes)
     start, silhouettes, performer = 0, (), None
     with faults.noted():
         begin = request.initial_frames(take, views.frames)
-        views, start = views.reduced(begin), begin[0]
-        seen = {frame: views.silhouettes(frame) for frame in begin}
+        (views, seen), start = views.reduced_and_seen(begin), begin[0]
         silhouettes = seen[start]
         found = replace(found, notes=(*found.notes, *check_first_look(take, views, seen)))
         performer = _performer(take, views, silhouettes)
@@ -149,8 +150,10 @@ def _checked_views(take: Take, request: CheckRequest, faults: _Faults) -> TakeCh
     )
 
 
-def _opened(take: Take, faults: _Faults, progress: Progress) -> Views:
+def _opened(take: Take, faults: _Faults, progress: Progress) -> Views | None:
     """The views of the cameras without a fault; ``faults`` gets one for each of the others.
+
+    None where too few are left.
 
     Raises:
         MocapError: a fault of another kind.
@@ -159,6 +162,8 @@ def _opened(take: Take, faults: _Faults, progress: Progress) -> Views:
     while True:
         try:
             return open_views(take, without, progress=progress)
+        except TooFewCameras:
+            return None
         except MocapError as error:
             if error.camera is None or error.camera in without:
                 raise

@@ -1,7 +1,7 @@
 """What the cameras of a take see: calibration and footage brought together, camera by camera."""
 
 import logging
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -101,11 +101,22 @@ class Views:
     def reduced(self, frames: Sequence[int]) -> "Views":
         """The views at the resolution that fits the performer's size in ``frames``."""
         return self.reduced_by(
-            [
-                fitting_reduction(tuple(view.source.read(f) for f in frames)).factor
-                for view in self.views
-            ]
+            _factors([view.source.read(f) for f in frames] for view in self.views)
         )
+
+    def reduced_and_seen(
+        self, frames: Sequence[int]
+    ) -> tuple["Views", dict[int, tuple[Silhouette, ...]]]:
+        """As `reduced`, and what those views see, by frame; the views are unreduced so far."""
+        seen = {frame: self.silhouettes(frame) for frame in frames}
+        reduced = self.reduced_by(_factors(zip(*seen.values(), strict=True)))
+        return reduced, {
+            frame: tuple(
+                view.reduction.silhouette(silhouette)
+                for view, silhouette in zip(reduced.views, silhouettes, strict=True)
+            )
+            for frame, silhouettes in seen.items()
+        }
 
     def reduced_by(self, factors: Sequence[int]) -> "Views":
         """The views with pictures reduced by one whole factor each."""
@@ -116,6 +127,15 @@ class Views:
         sizes = (f"{view.camera.name} {'{} x {}'.format(*view.camera.size)}" for view in views)
         _log.info("tracked at px: %s", ", ".join(sizes))
         return replace(self, views=tuple(views))
+
+
+def _factors(seen: Iterable[Sequence[Silhouette]]) -> list[int]:
+    """The reduction of each camera that fits the performer's size in what it has ``seen``."""
+    return [fitting_reduction(tuple(silhouettes)).factor for silhouettes in seen]
+
+
+class TooFewCameras(MocapError):
+    """Too many cameras are left out."""
 
 
 def open_views(
@@ -143,7 +163,7 @@ def open_views(
     footage = {name: open_footage(pattern, name, span) for name in used}
     if len(used) < _FEWEST_CAMERAS:
         count = f"{len(used)} camera{'s' * (len(used) != 1)} left"
-        raise MocapError(count, f"use at least {_FEWEST_CAMERAS}", file=take.path)
+        raise TooFewCameras(count, f"use at least {_FEWEST_CAMERAS}", file=take.path)
     sizes = {name: f.size for name, f in footage.items()}
     settings = replace(_calibration_settings(take), sizes=sizes, only=used)
     calibration = read_calibration(take.cameras.calibration, settings)

@@ -3,6 +3,7 @@
 import base64
 import re
 import shutil
+from collections import Counter
 from dataclasses import replace
 from html.parser import HTMLParser
 
@@ -12,11 +13,13 @@ import pytest
 from silhouette_mocap.core.cameras.arrangement import millimetres_per_pixel
 from silhouette_mocap.core.checking.check import CheckRequest, checked
 from silhouette_mocap.core.checking.estimate import Estimate
+from silhouette_mocap.core.checking.footage_check import FootageCheck
 from silhouette_mocap.core.checking.sheet import write_check_sheet
 from silhouette_mocap.core.checking.words import estimate_words, readiness, take_words
 from silhouette_mocap.core.errors import MocapError
 from silhouette_mocap.core.pipeline import initial_frames
 from silhouette_mocap.core.rendering.native import NativeEvaluator
+from silhouette_mocap.core.silhouettes.source import SilhouetteSource
 from silhouette_mocap.core.take.reading import read_take
 from silhouette_mocap.core.take.views import open_views
 
@@ -77,6 +80,32 @@ def test_every_fault_is_found_at_once(folder):
         "cam_03",
         "cam_04",
     ]
+
+
+@pytest.mark.parametrize("missing", [4, 5])
+def test_cameras_without_footage_are_all_that_is_told_of(folder, missing):
+    for number in range(1, missing + 1):
+        shutil.rmtree(folder / "masks" / f"cam_0{number}")
+    faults = check_of(folder / "take.toml").faults
+    assert [fault.camera for fault in faults] == [f"cam_0{n}" for n in range(1, missing + 1)]
+
+
+def test_frames_of_the_initial_pose_are_read_once(small_take, monkeypatch):
+    read, whole = Counter(), SilhouetteSource.read
+
+    def reading(source, frame):
+        read[source.footage.camera, frame] += 1
+        return whole(source, frame)
+
+    monkeypatch.setattr(SilhouetteSource, "read", reading)
+    request = CheckRequest(lambda *_: (0, 1, 2, 3), NativeEvaluator)
+    monkeypatch.setattr("silhouette_mocap.core.checking.check.checked_footage", no_footage)
+    assert not checked(read_take(small_take), request).faults
+    assert len(read) == 20 and set(read.values()) == {1}
+
+
+def no_footage(views, seconds):
+    return FootageCheck((), (), 0.0)
 
 
 def test_a_take_that_cannot_be_opened_has_its_fault_and_no_camera(folder):
