@@ -28,6 +28,8 @@ from .results.fingerprint import Inputs, fit_inputs
 from .results.journal import SET_ASIDE, UNFINISHED, Journal, Start, set_aside
 from .results.writing import (
     MOTION,
+    OVERLAY,
+    PAGE,
     FitResult,
     Outcome,
     check_spared,
@@ -105,6 +107,9 @@ def fit(take: Take, request: FitRequest, progress: Progress) -> FitResult:
         finished = finished_result(request.out, inputs, views)
         if finished is not None:
             progress.note(f"all frames in {request.out / MOTION} were finished before")
+            gone = [name for name in (PAGE, OVERLAY) if not (request.out / name).exists()]
+            if gone:
+                progress.note(f"{' and '.join(gone)} went since; leave out --resume for new ones")
             return finished
     if journal is None:
         journal = _begun(take, views, request, inputs, progress)
@@ -134,6 +139,8 @@ def _begun(
 ) -> Journal:
     """A journal with the first pose and no frame; what lies in its place is set aside."""
     start = initial_frames(take, views.frames)
+    # before they are read, as the fit may take longer than a change of theirs
+    stamps = np.stack([views.stamps(frame) for frame in start])
     views = views.reduced(start)
     for note in views.notes:
         progress.note(note)
@@ -150,10 +157,17 @@ def _begun(
             f"an unfinished fit is set aside in {request.out / SET_ASIDE}; "
             "--resume would have gone on with it"
         )
-    factors = tuple(view.reduction.factor for view in views.views)
-    notes = (*views.notes, *looks, *first.notes)
     return Journal.begun(
-        request.out / UNFINISHED, Start(inputs, factors, first.body, first.pose, notes)
+        request.out / UNFINISHED,
+        Start(
+            inputs=inputs,
+            factors=tuple(view.reduction.factor for view in views.views),
+            frames=np.array(start, np.int64),
+            stamps=stamps,
+            body=first.body,
+            pose=first.pose,
+            notes=(*views.notes, *looks, *first.notes),
+        ),
     )
 
 
@@ -171,20 +185,22 @@ def _track(outcome: Outcome, request: FitRequest, progress: Progress) -> None:
         past = [journal.start.pose, journal.start.pose, *finished[: len(frames)]]
         left = frames[len(past) - 2 :]
         finished = finished[len(frames) :]
-        seen: dict[int, Silhouettes] = {}
+        seen: dict[int, tuple[np.ndarray, Silhouettes]] = {}
         for found in track(tracker, past[-1], _read(views, left, seen), past[-2]):
-            picture = _overlay(tracker.evaluator, views, found, seen.pop(found.frame))
-            journal.add(found, views.stamps(found.frame), picture)
+            stamps, silhouettes = seen.pop(found.frame)
+            journal.add(found, stamps, _overlay(tracker.evaluator, views, found, silhouettes))
             progress.advance(found.frame, _figures(found, views))
 
 
 def _read(
-    views: Views, frames: Sequence[int], seen: dict[int, Silhouettes]
+    views: Views, frames: Sequence[int], seen: dict[int, tuple[np.ndarray, Silhouettes]]
 ) -> Iterator[tuple[int, Silhouettes]]:
-    """Numbers and silhouettes of ``frames``, which are put into ``seen`` too."""
+    """Numbers and silhouettes of ``frames``; with the stamps of their files in ``seen`` too."""
     for frame in frames:
-        seen[frame] = views.silhouettes(frame)
-        yield frame, seen[frame]
+        stamps = views.stamps(frame)
+        silhouettes = views.silhouettes(frame)
+        seen[frame] = (stamps, silhouettes)
+        yield frame, silhouettes
 
 
 def initial_frames(take: Take, frames: tuple[int, int]) -> tuple[int, ...]:

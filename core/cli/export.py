@@ -6,6 +6,7 @@ from pathlib import Path
 from ..errors import MocapError
 from ..motion.export_request import FORMATS, Exporter
 from ..results.exporting import check_formats, export
+from ..results.folder import occupied
 from .arguments import add_take, format_list, taken
 
 EXAMPLE = "silhouette-mocap export sample_scenes/walk/take.toml --out out/walk --export fbx,trc"
@@ -34,7 +35,8 @@ def run(arguments: argparse.Namespace, exporter: Exporter | None) -> int:
     check_formats(formats, exporter)
     console = arguments.console
     console.begin("export", 1)
-    files = export(take, arguments.out, formats, exporter)
+    with occupied(arguments.out):
+        files = export(take, arguments.out, formats, exporter)
     console.advance(None)
     for path in files:
         console.wrote(path)

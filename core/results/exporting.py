@@ -46,10 +46,16 @@ def export(
         path = folder / f"{take.name}.trc"
         write_trc(path, motion)
         return (path,)
+    body = read_body(folder / BODY)
+    if body.dofs.names != motion.dof_names:
+        raise MocapError(
+            f"{MOTION} and {BODY} are of different fits", "run fit again, with --resume",
+            file=folder,
+        )  # fmt: skip
     # only a .blend shows cameras and footage, which may be gone by now
     views = _tracked_views(take, motion) if "blend" in formats else ()
     request = ExportRequest(
-        body=read_body(folder / BODY),
+        body=body,
         motion=motion,
         cameras=tuple(view.undistortion.camera for view in views),
         name=take.name,

@@ -11,18 +11,15 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import MocapError
-from ..footage.patterns import for_camera
 from ..take.take import Take
-from ..take.views import Views
+from ..take.views import View, Views
 from .report import versions
 
 Inputs = dict[str, str]
-"""Dotted key -> value as JSON, or the digest of a file."""
+"""Dotted key -> value as JSON, or a digest."""
 
 _DIGEST = "sha256 "
 _NAMED_AT_MOST = 3
-_LARGEST = 1 << 26
-"""Bytes; no calibration, body or plate is as large, but footage may lie beside them."""
 # they change what is written, not what is fitted; paths are judged by what lies there
 _OF_NO_MATTER = ("path", "name", "exports", "search", "frames")
 
@@ -39,21 +36,37 @@ def fit_inputs(take: Take, views: Views, settings: dict[str, object]) -> Inputs:
         MocapError: a file that cannot be read.
     """
     values = {key: value for key, value in asdict(take).items() if key not in _OF_NO_MATTER}
-    values["cameras"]["calibration"] = _digest(take.cameras.calibration)
+    # not the file: what was read from it, and from whatever else belongs to it
+    del values["cameras"]["calibration"]
     if isinstance(take.performer.body, Path):
-        values["performer"]["body"] = _digest(take.performer.body)
-    for key in ("silhouettes", "video"):
+        values["performer"]["body"] = _digest(_contents(take.performer.body))
+    for key in ("silhouettes", "video", "plate", "ignore"):
         if values["footage"][key]:
             values["footage"][key] = os.path.relpath(values["footage"][key], take.path.parent)
-    for key in ("plate", "ignore"):
-        pattern = values["footage"][key]
-        if pattern:
-            paths = {c.name: Path(for_camera(pattern, c.name)) for c in views.cameras}
-            values["footage"][key] = {name: _digest(path) for name, path in paths.items()}
     program = {key: value for key, value in versions().items() if key not in ("python", "machine")}
     cameras = [camera.name for camera in views.cameras]
     asked = {**settings, "frames": list(views.frames), "used_cameras": cameras}
-    return _flat({**values, "fit": asked, "program": program})
+    seen: Inputs = {}
+    for view in views.views:
+        seen |= _view_digests(view)
+    return {**_flat({**values, "fit": asked, "program": program}), **seen}
+
+
+def _view_digests(view: View) -> Inputs:
+    """Digests of one camera's calibration, plate and ignore mask, as they were read."""
+    camera, source = view.undistortion.source, view.source
+    plate = getattr(source.extractor, "plate", None)
+    lens = (camera.matrix, camera.camera_from_world, camera.distortion)
+    parts = {
+        "camera": (*lens, np.array([*camera.size, camera.fisheye])),
+        "plate of": () if plate is None else (plate.mean, plate.spread),
+        "ignore mask of": () if source.ignore is None else (source.ignore,),
+    }
+    return {
+        f"{part} {camera.name}": _digest(*(np.ascontiguousarray(a).tobytes() for a in arrays))
+        for part, arrays in parts.items()
+        if arrays
+    }
 
 
 def check_same(before: Inputs, now: Inputs, folder: Path) -> None:
@@ -77,8 +90,7 @@ def stamp_digests(names: Sequence[str], frames: np.ndarray, stamps: np.ndarray) 
     """One digest per camera of what stamps (T, V, 2) its ``frames`` (T,), in any order, had."""
     ordered = stamps[np.argsort(frames)]
     return {
-        f"footage of {name}": _DIGEST
-        + hashlib.sha256(np.ascontiguousarray(ordered[:, view]).tobytes()).hexdigest()
+        f"footage of {name}": _digest(np.ascontiguousarray(ordered[:, view]).tobytes())
         for view, name in enumerate(names)
     }
 
@@ -89,14 +101,10 @@ def _difference(key: str, before: str | None, now: str | None) -> str:
     return f"{key} was {before or 'not given'}, now {now or 'not given'}"
 
 
-def _digest(path: Path) -> str:
-    """Of a file, or of the files of a folder with their names."""
-    files = sorted(path.iterdir()) if path.is_dir() else [path]
+def _digest(*contents: bytes) -> str:
     digest = hashlib.sha256()
-    for file in files:
-        if file.is_file() and file.stat().st_size < _LARGEST:
-            digest.update(file.name.encode())
-            digest.update(_contents(file))
+    for content in contents:
+        digest.update(content)
     return _DIGEST + digest.hexdigest()
 
 

@@ -33,10 +33,12 @@ def occupied(folder: Path) -> Iterator[None]:
         MocapError: the folder cannot be made or written to, or another run occupies it.
     """
     missing = [place for place in (folder, *folder.parents) if not os.path.exists(place)]
-    lock = _locked(made_folder(folder) / LOCK)
+    lock = _locked(folder)
     try:
         yield
     finally:
+        if sys.platform == "win32":
+            lock.close()
         with suppress(OSError):
             Path(lock.name).unlink()
         lock.close()
@@ -45,8 +47,11 @@ def occupied(folder: Path) -> Iterator[None]:
                 place.rmdir()
 
 
-def _locked(path: Path) -> BinaryIO:
+def _locked(folder: Path) -> BinaryIO:
+    path = folder / LOCK
     while True:
+        # the run before may remove the lock, and a folder that it has made, at any time
+        made_folder(folder)
         try:
             lock = path.open("r+b" if path.exists() else "w+b")
         except FileNotFoundError:
@@ -60,7 +65,6 @@ def _locked(path: Path) -> BinaryIO:
                 f"another run writes into this folder ({holder or 'just begun'})",
                 "wait for it, or give another folder", file=path.parent,
             )  # fmt: skip
-        # the run before may have removed the file between our opening and locking it
         if path.exists() and os.path.samestat(os.fstat(lock.fileno()), path.stat()):
             break
         lock.close()

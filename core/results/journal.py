@@ -5,6 +5,7 @@ whatever ends the program leaves all frames before the last whole. Their overlay
 it. Memory does not grow with the take, and a later run goes on where this one ended.
 """
 
+import errno
 import json
 import os
 import shutil
@@ -12,6 +13,7 @@ import zlib
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
+from typing import BinaryIO
 
 import cv2
 import numpy as np
@@ -40,6 +42,8 @@ class Start:
     Attributes:
         inputs: what it depends on.
         factors: by which each of the V views is reduced.
+        frames: (n,) numbers of the frames that the initial pose was sought in.
+        stamps: (n, V, 2) of the files they were read from.
         body: the performer.
         pose: (D,) the initial pose.
         notes: what the user was told.
@@ -47,6 +51,8 @@ class Start:
 
     inputs: Inputs
     factors: tuple[int, ...]
+    frames: np.ndarray
+    stamps: np.ndarray
     body: Body
     pose: np.ndarray
     notes: tuple[str, ...]
@@ -64,6 +70,7 @@ class Journal:
         self.folder, self.start = folder, start
         self._kind = _record(len(start.pose), len(start.factors))
         self._file = folder / _FRAMES
+        self._stream = _opened(self._file)
         self._count = self._whole()
 
     @classmethod
@@ -80,6 +87,8 @@ class Journal:
             folder / _START,
             inputs=json.dumps(start.inputs),
             factors=np.array(start.factors, np.int64),
+            frames=start.frames,
+            stamps=start.stamps,
             pose=start.pose,
             notes=json.dumps(start.notes),
         )
@@ -99,6 +108,8 @@ class Journal:
             start = Start(
                 inputs=json.loads(str(stored["inputs"])),
                 factors=tuple(stored["factors"].tolist()),
+                frames=stored["frames"],
+                stamps=stored["stamps"],
                 body=read_body(folder / _BODY),
                 pose=stored["pose"],
                 notes=tuple(json.loads(str(stored["notes"]))),
@@ -119,18 +130,18 @@ class Journal:
             picture: (H, W, 3) uint8 BGR overlay.
 
         Raises:
-            MocapError: the disk refuses it.
+            MocapError: the disk refuses it, or the journal is not there any more.
         """
+        self._check_own()
         write_picture(self.picture(fit.frame), picture, _QUALITY)
-        record = _packed(fit, stamps, self._kind)
+        record, stream = _packed(fit, stamps, self._kind), self._stream
         try:
-            with self._file.open("r+b" if self._file.exists() else "wb") as stream:
-                # over what a record cut short has left
-                stream.seek(self._count * self._kind.itemsize)
-                stream.write(record.tobytes())
-                stream.truncate()
-                stream.flush()
-                os.fsync(stream.fileno())
+            # over what a record cut short has left
+            stream.seek(self._count * self._kind.itemsize)
+            if stream.write(record.tobytes()) < self._kind.itemsize:
+                raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+            stream.truncate()
+            os.fsync(stream.fileno())
         except OSError as error:
             raise unwritable(self._file, error) from error
         self._count += 1
@@ -161,39 +172,82 @@ class Journal:
 
     def remove(self) -> None:
         """Ends the journal, as its frames have gone into the results."""
-        (self.folder / _START).unlink()
+        self._stream.close()
         _remove(self.folder)
 
     def _records(self) -> np.ndarray:
-        if not self._count:
-            return np.zeros(0, self._kind)
-        return np.fromfile(self._file, self._kind, self._count)
+        """All finished frames.
+
+        Raises:
+            MocapError: they are not there any more, or not as they were written.
+        """
+        self._check_own()
+        records = self._read()[: self._count]
+        if len(records) < self._count or not all(map(_is_sound, records)):
+            raise MocapError("was changed while the fit ran", _ANEW, file=self._file)
+        return records
+
+    def _read(self) -> np.ndarray:
+        self._stream.seek(0)
+        data = self._stream.read()
+        return np.frombuffer(data, self._kind, len(data) // self._kind.itemsize)
+
+    def _check_own(self) -> None:
+        """Refuses to go on where the file on disk is not the one that was opened."""
+        try:
+            own = os.path.samestat(os.fstat(self._stream.fileno()), self._file.stat())
+        except OSError:
+            own = False
+        if not own:
+            raise MocapError(
+                "was moved or removed while the fit ran", "give each run a folder of its own",
+                file=self.folder,
+            )  # fmt: skip
 
     def _whole(self) -> int:
-        """How many records at the file's start are whole."""
-        if not self._file.exists():
-            return 0
-        records = np.fromfile(self._file, self._kind)
+        """How many records at the file's start are whole, with whole pictures."""
         whole = 0
-        while whole < len(records) and self._is_whole(records[whole]):
+        for record in self._read():
+            if not (_is_sound(record) and _is_whole_jpeg(self.picture(int(record["frame"])))):
+                break
             whole += 1
         return whole
 
-    def _is_whole(self, record: np.void) -> bool:
-        sound = zlib.crc32(record.tobytes()[:-4]) == record["check"]
-        return sound and self.picture(int(record["frame"])).exists()
+
+def _opened(file: Path) -> BinaryIO:
+    try:
+        return file.open("r+b" if file.exists() else "w+b", buffering=0)
+    except OSError as error:
+        raise unwritable(file, error) from error
+
+
+def _is_sound(record: np.void) -> bool:
+    return zlib.crc32(record.tobytes()[:-4]) == record["check"]
+
+
+def _is_whole_jpeg(file: Path) -> bool:
+    try:
+        with file.open("rb") as stream:
+            stream.seek(-2, os.SEEK_END)
+            return stream.read() == b"\xff\xd9"
+    except OSError:
+        return False
 
 
 def set_aside(out: Path) -> bool:
-    """Moves a journal in ``out`` away, over one moved before; one without frames goes.
+    """Moves a journal in ``out`` away, over a shorter one moved before; one without frames goes.
 
     Returns:
         Whether there was one with frames, of this version or another.
     """
-    frames = out / UNFINISHED / _FRAMES
-    if not frames.exists() or not frames.stat().st_size:
+    # one without a start has ended
+    size = _size(out / UNFINISHED / _FRAMES) if (out / UNFINISHED / _START).exists() else 0
+    if not size:
         _remove(out / UNFINISHED)
         return False
+    if _size(out / SET_ASIDE / _FRAMES) > size:
+        _remove(out / UNFINISHED)
+        return True
     _remove(out / SET_ASIDE)
     try:
         (out / UNFINISHED).replace(out / SET_ASIDE)
@@ -202,12 +256,16 @@ def set_aside(out: Path) -> bool:
     return True
 
 
+def _size(file: Path) -> int:
+    return file.stat().st_size if file.exists() else 0
+
+
 def _remove(folder: Path) -> None:
     """Removes what a journal holds; anything else in ``folder`` is the user's and stays."""
-    shutil.rmtree(folder / _PICTURES, ignore_errors=True)
     with suppress(OSError):
         for name in (_START, _BODY, _FRAMES):
             (folder / name).unlink(missing_ok=True)
+        shutil.rmtree(folder / _PICTURES, ignore_errors=True)
         folder.rmdir()
 
 

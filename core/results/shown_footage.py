@@ -11,6 +11,9 @@ from ..footage.pictures import colour_picture
 from ..footage.video_writing import write_video
 from ..take.views import View
 
+FOOTAGE = "footage"
+"""Folder of the videos that are written."""
+
 
 def shown_footage(views: Sequence[View], last: int, fps: float, folder: Path) -> dict[str, str]:
     """Camera name -> its footage, as Blender can show it.
@@ -33,7 +36,7 @@ def shown_footage(views: Sequence[View], last: int, fps: float, folder: Path) ->
         if view.undistortion.is_identity and _can_be_shown(view.place):
             found[name] = view.place
         else:
-            path = folder / "footage" / f"{name}.mp4"
+            path = folder / FOOTAGE / f"{name}.mp4"
             _write_video(view, last, fps, path)
             found[name] = str(path)
     return found

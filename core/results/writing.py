@@ -1,5 +1,6 @@
 """What a fit leaves in its folder: motion.npz, body.npz, report.json, report.html, overlay.mp4."""
 
+import hashlib
 import json
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
@@ -21,9 +22,10 @@ from ..progress import Progress
 from ..take.take import EXPORTS, Take
 from ..take.views import Views
 from .fingerprint import Inputs, check_same, stamp_digests
-from .journal import UNFINISHED, Journal
+from .journal import UNFINISHED, Journal, set_aside
 from .report import fit_quality, versions, write_report
 from .report_page import write_report_page
+from .shown_footage import FOOTAGE
 
 MOTION, BODY, REPORT, PAGE = "motion.npz", "body.npz", "report.json", "report.html"
 OVERLAY = "overlay.mp4"
@@ -71,14 +73,21 @@ def check_spared(take: Take, folder: Path) -> None:
     """Refuses a ``folder`` in which the result would replace what ``take`` is made of.
 
     Raises:
-        MocapError: it would replace the performer's body.
+        MocapError: it would replace the performer's body, or footage.
     """
-    body = take.performer.body
+    body, files = take.performer.body, take.footage
     if isinstance(body, Path) and body == (folder / BODY).resolve():
         raise MocapError(
             "is the body that the take names, and the result would replace it",
             "give another folder", file=body,
         )  # fmt: skip
+    shown = (folder / FOOTAGE).resolve()
+    for pattern in (files.silhouettes, files.video, files.plate, files.ignore):
+        if pattern is not None and shown in (Path(pattern), *Path(pattern).parents):
+            raise MocapError(
+                "holds files of the take, which the result might replace",
+                "give another folder", file=shown,
+            )  # fmt: skip
 
 
 def write_results(outcome: Outcome, folder: Path, progress: Progress) -> FitResult:
@@ -114,6 +123,7 @@ def write_results(outcome: Outcome, folder: Path, progress: Progress) -> FitResu
         **fit_quality(motion, fits),
         "error_mm": _error(take, motion, tell),
         "notes": notes,
+        "digests": _digests(folder),
         "inputs": {**start.inputs, **stamp_digests(motion.camera_names, *outcome.journal.stamps())},
     }
     report = write_report(files[2], report)
@@ -150,20 +160,26 @@ def resumed(folder: Path, inputs: Inputs, views: Views) -> Journal | None:
     journal = Journal.opened(folder / UNFINISHED)
     if journal is None:
         return None
-    check_same(journal.start.inputs, inputs, folder)
-    for frame, stamps in zip(*journal.stamps(), strict=True):
-        changed = (views.stamps(int(frame)) != stamps).any(axis=1)
-        if changed.any():
-            raise MocapError(
-                "the footage has changed since this frame was fitted",
-                "leave out --resume to fit all frames anew",
-                file=folder, camera=views.cameras[int(np.argmax(changed))].name, frame=int(frame),
-            )  # fmt: skip
+    start = journal.start
+    check_same(start.inputs, inputs, folder)
+    for frames, stamps in ((start.frames, start.stamps), journal.stamps()):
+        _check_footage(frames, stamps, views, folder)
     return journal
 
 
+def _check_footage(frames: np.ndarray, stamps: np.ndarray, views: Views, folder: Path) -> None:
+    for frame, before in zip(frames.tolist(), stamps, strict=True):
+        changed = (views.stamps(frame) != before).any(axis=1)
+        if changed.any():
+            raise MocapError(
+                "the footage has changed since this frame was used",
+                "leave out --resume to fit all frames anew",
+                file=folder, camera=views.cameras[int(np.argmax(changed))].name, frame=frame,
+            )  # fmt: skip
+
+
 def finished_result(folder: Path, inputs: Inputs, views: Views) -> FitResult | None:
-    """The finished fit in ``folder``; None where there is none.
+    """The finished fit in ``folder``, which names no files; None where there is none.
 
     Raises:
         MocapError: it was made from other inputs or footage.
@@ -175,12 +191,23 @@ def finished_result(folder: Path, inputs: Inputs, views: Views) -> FitResult | N
         return None
     if not isinstance(report, dict) or not report.get("finished"):
         return None
+    if report.get("digests") != _digests(folder) or not isinstance(report.get("inputs"), dict):
+        return None
     frames = np.arange(views.frames[0], views.frames[1] + 1)
     names = [camera.name for camera in views.cameras]
     stamps = np.stack([views.stamps(int(frame)) for frame in frames])
     check_same(report["inputs"], {**inputs, **stamp_digests(names, frames, stamps)}, folder)
-    files = (MOTION, BODY, REPORT, PAGE, OVERLAY)
-    return FitResult(motion, report, tuple(folder / name for name in files))
+    set_aside(folder)
+    return FitResult(motion, report, ())
+
+
+def _digests(folder: Path) -> dict[str, str]:
+    """Of the files that a report belongs to; without one that is missing."""
+    return {
+        name: hashlib.sha256((folder / name).read_bytes()).hexdigest()
+        for name in (MOTION, BODY)
+        if (folder / name).exists()
+    }
 
 
 def _places(outcome: Outcome, folder: Path) -> tuple[Path, ...]:
@@ -188,7 +215,7 @@ def _places(outcome: Outcome, folder: Path) -> tuple[Path, ...]:
     if outcome.finished or not paths[0].exists():
         return paths
     try:
-        spared = len(read_motion(paths[0]).frames) > len(outcome.journal)
+        spared = len(read_motion(paths[0]).frames) >= len(outcome.journal)
     except MocapError:
         # of another version, perhaps: whatever it is, it may be worth more
         spared = True
@@ -202,11 +229,14 @@ def _partial(path: Path) -> Path:
 def _tell_files(outcome: Outcome, motion: Path, tell: Callable[[str], None]) -> None:
     spared = motion.name != MOTION
     if not outcome.finished:
-        beside = f", beside the longer {MOTION} of an earlier fit" if spared else ""
+        beside = f", beside the {MOTION} of an earlier fit" if spared else ""
         kept = f"the {len(outcome.journal)} finished frames are kept in {motion}{beside}"
         tell(f"{kept}; --resume goes on")
     names = [OVERLAY] * (not outcome.finished)
     names += [f"{outcome.take.name}.{suffix}" for suffix in EXPORTS]
+    if outcome.finished:
+        for path in _places(outcome, motion.parent):
+            _partial(path).unlink(missing_ok=True)
     names += [_partial(motion).name]
     older = [name for name in names if (motion.parent / name).exists()]
     if older and not spared:

@@ -34,7 +34,15 @@ def stamps(frame: int) -> np.ndarray:
 
 def begun(folder, frames=()) -> Journal:
     body = small_body("sixteen_segment")
-    start = Start({"fps": "15"}, (1, 2, 1), body, body.rest_pose + 0.1, ("beware",))
+    start = Start(
+        inputs={"fps": "15"},
+        factors=(1, 2, 1),
+        frames=np.array([0, 2]),
+        stamps=np.stack([stamps(0), stamps(2)]),
+        body=body,
+        pose=body.rest_pose + 0.1,
+        notes=("beware",),
+    )
     journal = Journal.begun(folder, start)
     for frame in frames:
         journal.add(frame_fit(frame), stamps(frame), PICTURE)
@@ -62,7 +70,8 @@ def test_how_it_began_comes_back(tmp_path):
     wanted = begun(tmp_path / "j").start
     found = Journal.opened(tmp_path / "j").start
     assert (found.inputs, found.factors, found.notes) == ({"fps": "15"}, (1, 2, 1), ("beware",))
-    np.testing.assert_array_equal(found.pose, wanted.pose)
+    for name in ("pose", "frames", "stamps"):
+        np.testing.assert_array_equal(getattr(found, name), getattr(wanted, name))
     pose = wanted.pose[None]
     np.testing.assert_array_equal(points(found.body, pose), points(wanted.body, pose))
 
@@ -87,6 +96,31 @@ def test_a_damaged_record_ends_the_journal(tmp_path):
     data[len(data) // 2] ^= 1
     file.write_bytes(data)
     assert [fit.frame for fit in Journal.opened(tmp_path / "j").fits()] == [5]
+
+
+def test_a_frame_whose_picture_is_cut_short_counts_as_not_finished(tmp_path):
+    picture = begun(tmp_path / "j", (5, 6)).picture(6)
+    picture.write_bytes(picture.read_bytes()[:-5])
+    assert [fit.frame for fit in Journal.opened(tmp_path / "j").fits()] == [5]
+
+
+@pytest.mark.parametrize("name", ["frames.bin", ""])
+def test_a_journal_that_goes_while_it_is_used_is_a_fault(tmp_path, name):
+    journal = begun(tmp_path / "j", (5, 6))
+    (tmp_path / "j" / name).rename(tmp_path / "elsewhere")
+    begun(tmp_path / "j", (1,)) if not name else None
+    for use in (journal.fits, lambda: journal.add(frame_fit(7), stamps(7), PICTURE)):
+        with pytest.raises(MocapError, match=r"j: was moved or removed while the fit ran; give"):
+            use()
+
+
+def test_frames_that_are_changed_behind_its_back_are_a_fault(tmp_path):
+    journal = begun(tmp_path / "j", (5, 6))
+    with (tmp_path / "j" / "frames.bin").open("r+b") as stream:
+        stream.seek(50)
+        stream.write(b"other")
+    with pytest.raises(MocapError, match="was changed while the fit ran"):
+        journal.fits()
 
 
 def test_a_frame_without_its_picture_counts_as_not_finished(tmp_path):
@@ -117,6 +151,19 @@ def test_a_journal_is_set_aside_over_an_older_one(tmp_path):
         assert set_aside(tmp_path)
     assert not (tmp_path / UNFINISHED).exists()
     assert [fit.frame for fit in Journal.opened(tmp_path / SET_ASIDE).fits()] == [2, 3]
+
+
+def test_a_longer_journal_set_aside_before_stays(tmp_path):
+    for frames in ((1, 2, 3), (4,)):
+        begun(tmp_path / UNFINISHED, frames)
+        assert set_aside(tmp_path)
+    assert not (tmp_path / UNFINISHED).exists() and len(Journal.opened(tmp_path / SET_ASIDE)) == 3
+
+
+def test_what_an_ended_journal_has_left_goes(tmp_path):
+    begun(tmp_path / UNFINISHED, (1, 2))
+    (tmp_path / UNFINISHED / "start.npz").unlink()
+    assert not set_aside(tmp_path) and not list(tmp_path.iterdir())
 
 
 def test_an_empty_journal_replaces_none(tmp_path):

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from silhouette_mocap.core import pipeline
 from silhouette_mocap.core.errors import MocapError
+from silhouette_mocap.core.motion.motion import read_motion, write_motion
 from silhouette_mocap.core.pipeline import FitRequest, fit
 from silhouette_mocap.core.progress import Silence
 from silhouette_mocap.core.results.journal import SET_ASIDE, UNFINISHED
@@ -128,7 +129,7 @@ def test_resuming_a_finished_fit_does_nothing(take_file, tmp_path):
     notes = Notes()
     second = fit(take, request, notes)
     assert "were finished before" in notes.told[-1] and not notes.frames
-    assert second.files == first.files and second.report == first.report
+    assert second.files == () and second.report == first.report
     assert {path: path.stat().st_mtime_ns for path in request.out.iterdir()} == before
 
 
@@ -163,9 +164,12 @@ def test_a_changed_take_is_refused_by_the_names_of_its_keys(take_file, cut_off, 
     text = take_file.read_text("utf-8").replace("fps = 15.0", "fps = 25.0")
     take_file.write_text(text + "height_m = 1.7\n", "utf-8")
     calibration = take_file.with_name("calibration.toml")
-    calibration.write_text(calibration.read_text("utf-8") + "\n", "utf-8")
+    changed = (
+        calibration.read_text("utf-8").replace("137.0", "138.0", 3).replace("138.0", "137.0", 2)
+    )
+    calibration.write_text(changed, "utf-8")
     wanted = (
-        "fps was 15, now 25, cameras.calibration has changed, "
+        "fps was 15, now 25, camera cam_02 has changed, "
         "performer.height_m was not given, now 1.7; change it back"
     )
     with pytest.raises(MocapError, match=wanted):
@@ -175,8 +179,38 @@ def test_a_changed_take_is_refused_by_the_names_of_its_keys(take_file, cut_off, 
 def test_changed_footage_of_a_finished_frame_is_refused(take_file, cut_off, tmp_path):
     cut_off(2)
     repaint(take_file, "cam_03", 1)
-    with pytest.raises(MocapError, match=r"camera cam_03, frame 1: the footage has changed since"):
+    with pytest.raises(
+        MocapError,
+        match=r"camera cam_03, frame 1: the footage has changed since",
+    ):
         fit(read_take(take_file), asked(tmp_path / "out", resume=True), Silence())
+
+
+def test_changed_footage_of_the_initial_pose_is_refused(take_file, cut_off, tmp_path):
+    cut_off(0)
+    repaint(take_file, "cam_02", 1)
+    with pytest.raises(MocapError, match=r"camera cam_02, frame 1: the footage has changed since"):
+        fit(read_take(take_file), asked(tmp_path / "out", resume=True), Silence())
+
+
+def test_what_went_of_a_finished_fit_is_told(take_file, tmp_path):
+    request = asked(tmp_path / "out", resume=True)
+    fit(read_take(take_file), request, Silence())
+    (request.out / "overlay.mp4").unlink()
+    notes = Notes()
+    fit(read_take(take_file), request, notes)
+    assert notes.told[-1] == "overlay.mp4 went since; leave out --resume for new ones"
+
+
+def test_a_finished_report_beside_another_motion_is_not_trusted(take_file, tmp_path):
+    request = asked(tmp_path / "out", resume=True)
+    fit(read_take(take_file), request, Silence())
+    before = contents(request.out)
+    motion = read_motion(request.out / "motion.npz")
+    write_motion(request.out / "motion.npz", replace(motion, pose=motion.pose + 0.1))
+    notes = Notes()
+    fit(read_take(take_file), request, notes)
+    assert len(notes.frames) == FRAMES and contents(request.out) == before
 
 
 def test_changed_footage_of_a_finished_fit_is_refused(take_file, tmp_path):
