@@ -3,6 +3,7 @@
 import os
 import signal
 import sys
+from contextlib import suppress
 from importlib.util import find_spec
 
 _SIGNALS = (signal.SIGINT, signal.SIGTERM)
@@ -23,6 +24,12 @@ def main() -> int:
     code = run(sys.argv[1:], exporter)
     # what comes while Python shuts down must not change the exit code
     _handle(signal.SIG_IGN)
+    if code == _INTERRUPTED:
+        # nor must one that Python has taken note of already
+        with suppress(OSError, ValueError):
+            sys.stdout.flush()
+            sys.stderr.flush()
+        os._exit(code)
     return code
 
 
