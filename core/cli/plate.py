@@ -32,9 +32,12 @@ def run(arguments: argparse.Namespace, exporter: Exporter | None) -> int:
     given = CalibrationSettings(take.cameras.format, take.cameras.units, take.cameras.up)
     names = read_camera_names(take.cameras.calibration, given)
     recipes = {} if arguments.recipes is None else read_plate_recipes(arguments.recipes)
-    for name in (*recipes, *arguments.without):
-        if name not in names:
-            raise MocapError(f'there is no camera "{name}"', f"the cameras are {', '.join(names)}")
+    for file, named in ((arguments.recipes, recipes), (take.path, arguments.without)):
+        for name in named:
+            if name not in names:
+                raise MocapError(
+                    f'there is no camera "{name}"', f"the cameras are {', '.join(names)}", file=file
+                )
     used = [name for name in names if name not in arguments.without]
     console = arguments.console
     console.begin("plates", len(used))

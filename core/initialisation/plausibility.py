@@ -20,7 +20,7 @@ _REMEDY = (
 
 
 def check_height(height: float, file: Path | None = None) -> None:
-    """Refuses a standing height (m) that nobody has; ``file`` is the body's, where it has one.
+    """Refuses a standing height (m) that nobody has; ``file`` is the body's or the take's.
 
     Raises:
         MocapError: a dwarf or a giant.

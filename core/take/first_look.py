@@ -145,7 +145,7 @@ def _check_upright(take: Take, cameras: Cameras, seen: Silhouettes, centre: np.n
             "check floor under [world], and units and up under [cameras]", file=take.path,
         )  # fmt: skip
     if take.performer.height_m is None and not isinstance(take.performer.body, Path):
-        check_height(standing_height(cameras, seen, centre, take.floor))
+        check_height(standing_height(cameras, seen, centre, take.floor), take.path)
 
 
 def _looks_at(camera: Camera, point: np.ndarray) -> bool:

@@ -234,7 +234,7 @@ def _view(take: Take, calibrated: Camera, footage: Footage) -> View:
         ignored |= ~observed_pixels(calibrated.size, *change, size)
     if take.footage.ignore is not None:
         ignored |= _ignore_mask(take.footage.ignore, name, size)
-    undistortion = Undistortion(camera)
+    undistortion = _undistortion(take, camera)
     _log.info(
         "camera %s: focal length %.1f px, centre %s m, %s",
         name, camera.matrix[0, 0], camera.centre.round(3).tolist(),
@@ -248,6 +248,15 @@ def _view(take: Take, calibrated: Camera, footage: Footage) -> View:
         rectifier=None if undistortion.is_identity else undistortion,
     )
     return View(for_camera(footage_pattern(take), name), source, undistortion, Reduction())
+
+
+def _undistortion(take: Take, camera: Camera) -> Undistortion:
+    try:
+        return Undistortion(camera)
+    except MocapError as error:
+        raise MocapError(
+            error.problem, error.remedy, file=take.cameras.calibration, camera=error.camera
+        ) from error
 
 
 def _ignore_mask(pattern: str, camera: str, size: tuple[int, int]) -> np.ndarray:

@@ -217,6 +217,7 @@ _camera(
 _camera("matrix by columns", "matrix", "[[137, 0, 0], [0, 137, 0], [80, 60, 1]]", "row 0 0 1")
 _camera("no size", "size", "[0, 0]", "size", "[0, 0]")
 _camera("three lens coefficients", "distortions", "[0.1, 0.0, 0.0]", "distortions", "got 3")
+_camera("a lens that folds the picture", "distortions", "[-3.0, 0.0, 0.0, 0.0]", "no viewing ray")
 _camera("footage of another aspect", "size", "[160, 90]", "160 x 120", "160 x 90", "adjust")
 _camera("footage turned to portrait", "size", "[120, 160]", "portrait and landscape")
 

@@ -142,6 +142,13 @@ def _(folder: Path):
     replace_text(folder / "take.toml", "[performer]", "[world]\nfloor = -1000.0\n[performer]")
 
 
+@VALUES.add(
+    "floor too far below the performer for a height", "take.toml: the performer would be 4."
+)
+def _(folder: Path):
+    replace_text(folder / "take.toml", "[performer]", "[world]\nfloor = -2.5\n[performer]")
+
+
 @VALUES.add("links that lead in a circle", "masks", "loop", unless=ON_UNIX)
 def _(folder: Path):
     os.rename(folder / "masks", folder / "kept")

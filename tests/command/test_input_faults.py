@@ -77,6 +77,15 @@ def test_a_plate_of_no_frames_is_refused(filmed_take, fault, frames):
     assert str(filmed_take) in line and "give frames of the take" in line
 
 
+def test_cameras_that_plates_know_nothing_of_name_who_names_them(filmed_take, tmp_path, fault):
+    recipes = tmp_path / "plates.toml"
+    recipes.write_text("[cam_9]\n", "utf-8")
+    line = fault("plate", filmed_take, "--recipes", recipes)
+    assert f'{recipes}: there is no camera "cam_9"; the cameras are cam_01' in line
+    line = fault("plate", filmed_take, "--without", "cam_8")
+    assert f'{filmed_take}: there is no camera "cam_8"' in line
+
+
 def test_a_score_that_cannot_be_written_names_the_file(small_take, tmp_path, fault):
     truth, target = small_take.with_name("truth.npz"), tmp_path / "missing" / "score.json"
     line = fault("score", truth, truth, "--json", target)
