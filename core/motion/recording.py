@@ -1,6 +1,6 @@
 """Tracked frames put together as a motion."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 
 import numpy as np
@@ -9,6 +9,9 @@ from ..body.body import POINT_NAMES, Body
 from ..body.kinematics import joint_positions, points
 from ..fitting.tracking import FrameFit
 from .motion import Motion
+
+_BLOCK = 500
+"""Poses."""
 
 
 def recorded(
@@ -30,9 +33,9 @@ def recorded(
         pose=poses,
         pose_raw=poses.copy(),
         dof_names=body.dofs.names,
-        joints=joint_positions(body, poses),
+        joints=_in_blocks(joint_positions, body, poses),
         joint_names=body.joint_names,
-        points=points(body, poses),
+        points=_in_blocks(points, body, poses),
         point_names=POINT_NAMES,
         xor_px=np.stack([s.xor_px for s in scores]),
         iou=np.stack([s.iou for s in scores]),
@@ -43,3 +46,11 @@ def recorded(
         lost=np.array([s.lost for s in scores]),
         locked=np.zeros(len(fits), bool),
     )
+
+
+def _in_blocks(
+    places: Callable[[Body, np.ndarray], np.ndarray], body: Body, poses: np.ndarray
+) -> np.ndarray:
+    """The (T, …) places of all poses; long takes would need much memory for their transforms."""
+    blocks = np.array_split(poses, range(_BLOCK, len(poses), _BLOCK))
+    return np.concatenate([places(body, block) for block in blocks])
