@@ -3,6 +3,7 @@
 import errno
 import logging
 import re
+import stat
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -52,6 +53,22 @@ def made_folder(path: Path) -> Path:
     except OSError as error:
         raise unwritable(path, error) from error
     return path
+
+
+def check_ordinary(path: Path, camera: str | None = None, frame: int | None = None) -> None:
+    """Refuses what is there but neither file nor folder: a pipe could be waited for without end.
+
+    Raises:
+        MocapError: something of that kind, with the ``camera`` and ``frame`` it is for.
+    """
+    try:
+        mode = path.stat().st_mode
+    except OSError:
+        # reading will tell
+        return
+    if not (stat.S_ISREG(mode) or stat.S_ISDIR(mode)):
+        problem = "is no ordinary file"
+        raise MocapError(problem, "check the path", file=path, camera=camera, frame=frame)
 
 
 def check_replaceable(path: Path, ours: re.Pattern[bytes]) -> None:

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from .errors import MocapError
+from .files import check_ordinary
 
 POINTS_NOT_COMMAS = "numbers need decimal points, not commas"
 MOST_BYTES = 2**20
@@ -41,6 +42,7 @@ def read_toml(path: Path) -> dict[str, Any]:
 
 
 def _text(path: Path) -> str:
+    check_ordinary(path)
     try:
         if path.stat().st_size > MOST_BYTES:
             problem = f"is larger than {MOST_BYTES // 2**20} MB"

@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import MocapError
+from ..files import check_ordinary
 from .camera import Camera
 from .readers import anipose_toml, opencv_yml, qualisys_qca
 from .readers.file_camera import FileCamera, FileContent, Reader
@@ -25,6 +26,7 @@ READERS: tuple[Reader, ...] = (
     qualisys_qca.READER,
     opencv_yml.READER,
 )
+_FOCAL_WIDTHS = (0.05, 1000.0)
 _MOST_BYTES = 8 * 2**20
 _log = logging.getLogger(__name__)
 WORLD_FROM_UP = {
@@ -157,6 +159,7 @@ def _reader(path: Path, key: str | None) -> Reader:
 
 
 def _first_bytes(path: Path) -> bytes:
+    check_ordinary(path)
     try:
         if path.stat().st_size > _MOST_BYTES:
             raise MocapError("is too large for a calibration", "check the path", file=path)
@@ -232,6 +235,7 @@ def _metric_camera(
             file=path,
             camera=camera.name,
         )
+    _check_focal_length(path, camera, size[0])
     rotation = camera.rotation @ WORLD_FROM_UP[settings.up or "z"].T
     return Camera(
         name=camera.name,
@@ -241,3 +245,16 @@ def _metric_camera(
         distortion=camera.distortion,
         fisheye=camera.fisheye,
     )
+
+
+def _check_focal_length(path: Path, camera: FileCamera, width: int) -> None:
+    """Refuses focal lengths that no lens has, in widths of the picture."""
+    focal = camera.matrix[0, 0]
+    shortest, longest = _FOCAL_WIDTHS
+    if not shortest * width <= focal <= longest * width:
+        raise MocapError(
+            f"matrix has a focal length of {focal:g} px for pictures {width} px wide",
+            "give it in px, or calibrate this camera again",
+            file=path,
+            camera=camera.name,
+        )

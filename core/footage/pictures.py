@@ -12,7 +12,7 @@ import cv2
 import numpy as np
 
 from ..errors import MocapError
-from ..files import made_folder, whole_file
+from ..files import check_ordinary, made_folder, whole_file
 
 PICTURE_SUFFIXES = (
     ".png",
@@ -50,6 +50,7 @@ def read_picture(
         MocapError: no such file, or not a whole picture.
     """
     place = {"file": path, "camera": camera, "frame": frame}
+    check_ordinary(path, camera, frame)
     try:
         data = np.fromfile(path, np.uint8)
     except FileNotFoundError as error:

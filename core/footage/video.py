@@ -12,6 +12,7 @@ import cv2
 import numpy as np
 
 from ..errors import MocapError
+from ..files import check_ordinary
 from .pictures import file_stamp
 
 HELD_BYTES = 64 * 2**20
@@ -116,6 +117,7 @@ class Video:
             yield frame, self.picture(frame)
 
     def _opened(self) -> cv2.VideoCapture:
+        check_ordinary(self.path, self.camera)
         # one decoder on every system, so that the same file gives the same pictures
         capture = cv2.VideoCapture(str(self.path), cv2.CAP_FFMPEG)
         if not capture.isOpened():

@@ -8,7 +8,7 @@ from zipfile import BadZipFile
 import numpy as np
 
 from ..errors import MocapError
-from ..files import whole_file
+from ..files import check_ordinary, whole_file
 
 # what numpy and zipfile raise on files that are cut short, changed or of another kind
 _DAMAGE = (OSError, ValueError, EOFError, TypeError, RuntimeError, BadZipFile, zlib.error)
@@ -38,6 +38,7 @@ def read_archive(path: Path, kind: str, remedy: str) -> dict[str, np.ndarray]:
     Raises:
         MocapError: no such file, or no archive that can be read as a whole.
     """
+    check_ordinary(path)
     try:
         with np.load(path, allow_pickle=False) as data:
             return {name: data[name] for name in data.files}

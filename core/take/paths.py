@@ -7,12 +7,23 @@ from pathlib import Path
 from ..errors import MocapError
 
 _PLACEHOLDER = re.compile(r"\{(camera|frame)")
+_NO_NAME = re.compile(r'[/\\:*?"<>|]')
 # keys that hold paths or path patterns, by table
 PATH_KEYS = {
     "": ("locks",),
     "cameras": ("calibration",),
     "footage": ("silhouettes", "video", "plate", "ignore"),
 }
+
+
+def names_files(name: str) -> bool:
+    """Whether files and folders can be called so, on every system."""
+    return (
+        name not in ("", ".", "..")
+        and name == name.strip()
+        and name.isprintable()
+        and not _NO_NAME.search(name)
+    )
 
 
 def followed(path: Path) -> Path:

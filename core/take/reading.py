@@ -17,7 +17,7 @@ from ..errors import MocapError
 from ..fitting.hierarchical import SETTINGS
 from ..initialisation.plausibility import HEIGHTS_M
 from ..toml import read_toml
-from .paths import PATH_KEYS, followed, inside
+from .paths import PATH_KEYS, followed, inside, names_files
 from .table import Table
 from .take import (
     EXPORTS,
@@ -37,6 +37,7 @@ VERSION = 1
 _FRAME_RATES = (0.1, 10_000.0)
 _SCALES = (0.01, 100.0)
 _LONGEST_NAME = 100
+_LONGEST_CHAIN = 20
 _TOP = (
     "version", "name", "fps", "frames", "initial_pose", "extends", "locks",
     "cameras", "footage", "performer", "world", "fit", "export",
@@ -70,6 +71,9 @@ def read_take(path: str | Path, root: str | Path | None = None) -> Take:
 
 def _merged(path: Path, root: Path, above: tuple[Path, ...]) -> dict[str, Any]:
     """The tables of ``path`` over those of the file it extends, paths absolute."""
+    if len(above) > _LONGEST_CHAIN:
+        problem = f"extends more than {_LONGEST_CHAIN} files in a row"
+        raise MocapError(problem, 'remove some of the "extends" keys', file=above[0])
     if path in above:
         raise MocapError("extends itself", 'remove one of the "extends" keys', file=path)
     values = read_toml(path)
@@ -148,8 +152,9 @@ def _refuse_later(table: Table, key: str, later: tuple[str, ...], instead: tuple
 def _name(table: Table) -> str:
     name = table.text("name")
     if name is None:
-        return table.file.parent.name
-    if name in (".", "..") or any(c in name for c in '/\\:*?"<>|\0') or name != name.strip():
+        folder = table.file.parent.name
+        return folder if names_files(folder) else "take"
+    if not names_files(name):
         table.fault(f'"name" = {name!r} cannot name files', "use letters, digits, _ and -")
     if len(name.encode()) > _LONGEST_NAME:
         table.fault(

@@ -27,6 +27,7 @@ from ..silhouettes.plate import Plate, read_plate
 from ..silhouettes.silhouette import Silhouette
 from ..silhouettes.source import Extractor, SilhouetteSource
 from ..silhouettes.statistics import Statistics, StatisticsSettings
+from .paths import names_files
 from .reduction import Reduction, fitting_reduction
 from .table import Table
 from .take import Take
@@ -202,6 +203,12 @@ def _check_patterns(take: Take) -> None:
 
 def _used_names(take: Take, without: Sequence[str]) -> tuple[str, ...]:
     names = camera_names(take)
+    for name in names:
+        if not names_files(name):
+            raise MocapError(
+                f"a camera called {name!r} cannot name files", "rename it",
+                file=take.cameras.calibration,
+            )  # fmt: skip
     known = ", ".join(names)
     if len(names) < _FEWEST_CAMERAS:
         raise MocapError(
@@ -213,12 +220,6 @@ def _used_names(take: Take, without: Sequence[str]) -> tuple[str, ...]:
             raise MocapError(
                 f'there is no camera "{name}"', f"the cameras are {known}", file=take.path
             )
-    for name in names:
-        if name in (".", "..") or "/" in name or "\\" in name:
-            raise MocapError(
-                f'a camera called "{name}" cannot name files', "rename it",
-                file=take.cameras.calibration,
-            )  # fmt: skip
     return tuple(name for name in names if name not in without)
 
 

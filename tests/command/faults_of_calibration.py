@@ -1,12 +1,13 @@
 """Faults of the calibration: its file in each format, and the cameras in it."""
 
+import os
 import re
 from collections.abc import Callable
 from pathlib import Path
 
 import cv2
 import numpy as np
-from circumstances import ON_LINUX, bound_by_permissions
+from circumstances import ON_LINUX, ON_UNIX, bound_by_permissions
 from faults import Chapter, replace_text
 from silhouette_mocap.core.cameras.calibration import read_calibration
 from silhouette_mocap.core.cameras.camera import Camera
@@ -214,6 +215,20 @@ _camera(
 _camera(
     "negative focal length", "matrix", "[[-137, 0, 80], [0, 137, 60], [0, 0, 1]]", "focal length"
 )
+_camera(
+    "a focal length of nearly nothing",
+    "matrix",
+    "[[1e-300, 0, 80], [0, 1e-300, 60], [0, 0, 1]]",
+    "matrix has a focal length of 1e-300 px",
+    "160 px wide",
+    "calibrate this camera again",
+)
+_camera(
+    "focal lengths far from each other",
+    "matrix",
+    "[[137, 0, 80], [0, 13.7, 60], [0, 0, 1]]",
+    "focal lengths of 137 and 13.7 px",
+)
 _camera("matrix by columns", "matrix", "[[137, 0, 0], [0, 137, 0], [80, 60, 1]]", "row 0 0 1")
 _camera("no size", "size", "[0, 0]", "size", "[0, 0]")
 _camera("three lens coefficients", "distortions", "[0.1, 0.0, 0.0]", "distortions", "got 3")
@@ -281,9 +296,20 @@ def _(folder: Path):
     replace_text(opencv_pair(folder) / "intri.yml", "K_cam_02", "K_cam_01")
 
 
-@CAMERAS.add("a camera named as no file can be", '"a/b"', "rename")
+@CAMERAS.add("a camera named as no file can be", "'a/b'", "rename")
 def _(folder: Path):
     replace_text(folder / TOML, 'name = "cam_02"', 'name = "a/b"')
+
+
+@CAMERAS.add("a camera with a colour of the terminal", "x1b[31mcam", "cannot name files; rename it")
+def _(folder: Path):
+    replace_text(folder / TOML, 'name = "cam_02"', 'name = "\\u001b[31mcam"')
+
+
+@FILE.add("a calibration that is a pipe", "calibration.toml: is no ordinary file", unless=ON_UNIX)
+def _(folder: Path):
+    (folder / TOML).unlink()
+    os.mkfifo(folder / TOML)
 
 
 @CAMERAS.add("only one camera", "calibration.toml", "1 camera", "at least 2")

@@ -1,11 +1,12 @@
 """Faults of the footage: its files, and what the masks show."""
 
+import os
 import shutil
 from pathlib import Path
 
 import cv2
 import numpy as np
-from circumstances import ON_LINUX, bound_by_permissions
+from circumstances import ON_LINUX, ON_UNIX, bound_by_permissions
 from faults import Chapter, fit_words, replace_text
 from silhouette_mocap.core.footage.video_writing import write_video
 
@@ -229,6 +230,13 @@ def _(folder: Path):
 )
 def _(folder: Path):
     painted(mask(folder, "cam_02", 0), lambda picture: picture[::2, ::2])
+
+
+@MASKS.add("a mask that is a pipe", "000000.png, camera cam_02, frame 0: is no", unless=ON_UNIX)
+def _(folder: Path):
+    path = mask(folder, "cam_02", 0)
+    path.unlink()
+    os.mkfifo(path)
 
 
 @MASKS.add("an ignore mask of a wrong size", "ignore.png, camera cam_01", "80 x 60", "160 x 120")

@@ -60,6 +60,22 @@ def _(folder: Path):
     replace_text(folder / "take.toml", "version = 1", 'version = 1\nextends = "../session.toml"')
 
 
+@FILE.add("takes that extend each other without end", "extends more than 20 files in a row")
+def _(folder: Path):
+    text = (folder / "take.toml").read_text("utf-8")
+    for number in range(1500):
+        extended = f'version = 1\nextends = "{number + 1}.toml"\n'
+        (folder / f"{number}.toml").write_text(extended, "utf-8")
+    (folder / "1500.toml").write_text(text, "utf-8")
+    (folder / "take.toml").write_text('version = 1\nextends = "0.toml"\n', "utf-8")
+
+
+@FILE.add("a take that is a pipe", "take.toml: is no ordinary file", unless=ON_UNIX)
+def _(folder: Path):
+    (folder / "take.toml").unlink()
+    os.mkfifo(folder / "take.toml")
+
+
 @FILE.add("a take that is a link to itself", "take.toml", "loop", unless=ON_UNIX)
 def _(folder: Path):
     (folder / "take.toml").unlink()
@@ -114,6 +130,9 @@ _value(
     "floor that is no number", "[performer]", "[world]\nfloor = nan\n[performer]", '"world.floor"'
 )
 _value("name that cannot name files", '"small"', '"../small"', '"name"', "cannot name files")
+_value(
+    "name with a colour of the terminal", '"small"', r'"\u001b[31msmall"', '"name"', "cannot name"
+)
 _value("name that is too long", '"small"', f'"{"small" * 60}"', '"name"', "300", "shorten")
 _value("unknown body", "sixteen_segment", "centaur", "centaur", "performer, sixteen_segment")
 _value("unknown unit", 'units = "m"', 'units = "feet"', "feet", "m, cm, mm")
@@ -163,6 +182,12 @@ def _with_body(folder: Path) -> Path:
 @VALUES.add("a body that is not there", "body.npz", "no such")
 def _(folder: Path):
     _with_body(folder)
+
+
+@VALUES.add("a body that is a pipe", "body.npz: is no ordinary file", unless=ON_UNIX)
+def _(folder: Path):
+    os.mkfifo(_with_body(folder))
+    return ("info", folder / "take.toml", "--progress", "none")
 
 
 @VALUES.add("body.npz of something else", "body.npz", "body")

@@ -17,6 +17,7 @@ from ...toml import POINTS_NOT_COMMAS
 from ..camera import LENS_COEFFICIENTS
 
 _LARGEST = 1e12
+_FOCAL_RATIOS = (0.2, 5.0)
 _REMEDY = f"correct or re-export the file; {POINTS_NOT_COMMAS}"
 
 
@@ -122,14 +123,20 @@ def intrinsic_matrix(value, place: Place) -> np.ndarray:
     """A (3, 3) matrix [[fx, 0, cx], [0, fy, cy], [0, 0, 1]] in px.
 
     Raises:
-        MocapError: other than 9 finite numbers, a focal length that is not positive, skew, or
-            another last row.
+        MocapError: other than 9 finite numbers, a focal length that is not positive, two
+            that differ beyond reason, skew, or another last row.
     """
     matrix = numbers_of_shape(value, (3, 3), place)
     if not np.allclose(matrix[2], [0, 0, 1]):
         raise place.fault("should end with the row 0 0 1", "check the order of its rows")
     if matrix[0, 0] <= 0 or matrix[1, 1] <= 0:
         raise place.fault("has a focal length that is not positive", "calibrate this camera again")
+    if not _FOCAL_RATIOS[0] <= matrix[1, 1] / matrix[0, 0] <= _FOCAL_RATIOS[1]:
+        raise place.fault(
+            f"has focal lengths of {matrix[0, 0]:g} and {matrix[1, 1]:g} px, which no px has "
+            "the shape for",
+            "calibrate this camera again",
+        )
     if abs(matrix[0, 1]) > 1e-6 * matrix[0, 0] or abs(matrix[1, 0]) > 1e-6 * matrix[0, 0]:
         raise place.fault(
             f"has a skew of {matrix[0, 1]:g}, which OpenCV's lens model lacks",

@@ -14,6 +14,7 @@ import cv2
 import numpy as np
 
 from ...errors import MocapError
+from ...files import check_ordinary
 from ...toml import POINTS_NOT_COMMAS
 from .file_camera import (
     FileCamera,
@@ -118,6 +119,7 @@ def _pair(path: Path) -> tuple[Path, Path]:
 def _nodes(path: Path) -> dict[str, np.ndarray | list[str] | float]:
     """Matrices, lists of strings and numbers of a file by key."""
     try:
+        check_ordinary(path)
         text = path.read_text(encoding="utf-8-sig")
         _check_one_document(text, path)
         storage = cv2.FileStorage(text, cv2.FileStorage_READ | cv2.FileStorage_MEMORY)
