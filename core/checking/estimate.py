@@ -32,7 +32,10 @@ _NUDGE_M = 0.01
 _PROGRAM_BYTES = 150e6
 _BYTES_PER_FOOTAGE_PX, _BYTES_PER_WORKING_PX = 38.0, 20.0
 _VIDEO_SHARE = 0.4
-_MOTION_BYTES_PER_DOF = 32.0
+_MOTION_BYTES, _MOTION_BYTES_PER_DOF = 4e3, 32.0
+_BODY_BYTES = 190e3
+_REPORT_BYTES, _REPORT_BYTES_PER_FRAME = 7.5e3, 50.0
+_PAGE_BYTES, _PAGE_PICTURES = 30e3, 6
 # bytes: for the body, and for each DOF of a frame
 _EXPORT_BYTES = {"blend": (600e3, 40.0), "fbx": (600e3, 30.0), "bvh": (5e3, 14.0), "trc": (0, 10.0)}
 
@@ -111,7 +114,7 @@ def estimated(trial: Trial, reading_s: float) -> Estimate:
     picture_s, picture_bytes = _timed_picture(tracker, trial, pose)
     first, last = trial.views.frames
     frames, dofs = last - first + 1, len(body.dofs)
-    motion = frames * dofs * _MOTION_BYTES_PER_DOF
+    motion = _MOTION_BYTES + frames * dofs * _MOTION_BYTES_PER_DOF
     exported = {
         f".{name}": base + frames * dofs * per_dof
         for name, (base, per_dof) in _EXPORT_BYTES.items()
@@ -126,7 +129,14 @@ def estimated(trial: Trial, reading_s: float) -> Estimate:
         picture_s=picture_s,
         memory_bytes=_PROGRAM_BYTES + _picture_memory(trial.views) + 3 * motion,
         meanwhile_bytes=frames * picture_bytes + motion,
-        results_bytes={"motion.npz": motion, "overlay.mp4": video, **exported},
+        results_bytes={
+            "motion.npz": motion,
+            "body.npz": _BODY_BYTES,
+            "report.json": _REPORT_BYTES + frames * _REPORT_BYTES_PER_FRAME,
+            "report.html": _PAGE_BYTES + min(frames, _PAGE_PICTURES) * picture_bytes,
+            "overlay.mp4": video,
+            **exported,
+        },
     )
 
 

@@ -17,7 +17,8 @@ from silhouette_mocap.core.checking.footage_check import FootageCheck
 from silhouette_mocap.core.checking.sheet import write_check_sheet
 from silhouette_mocap.core.checking.words import estimate_words, readiness, take_words
 from silhouette_mocap.core.errors import MocapError
-from silhouette_mocap.core.pipeline import initial_frames
+from silhouette_mocap.core.pipeline import FitRequest, fit, initial_frames
+from silhouette_mocap.core.progress import SILENCE
 from silhouette_mocap.core.rendering.native import NativeEvaluator
 from silhouette_mocap.core.silhouettes.source import SilhouetteSource
 from silhouette_mocap.core.take.reading import read_take
@@ -57,7 +58,15 @@ def test_the_estimate_grows_with_the_frames(sound):
     assert estimate.frames == 4 and 0 < estimate.frame_s < 30
     longer = replace(estimate, frames=104)
     assert longer.total_s == pytest.approx(estimate.total_s + 100 * estimate.frame_s)
-    assert set(estimate.results_bytes) == {"motion.npz", "overlay.mp4"}
+
+
+def test_the_files_are_those_of_a_fit_and_about_as_large(sound, quick_start, small_take, tmp_path):
+    take, request = read_take(small_take), FitRequest(tmp_path / "out")
+    files = fit(take, request, SILENCE).files
+    estimated = sound.estimate.results_bytes
+    assert set(estimated) == {path.name for path in files}
+    for path in files:
+        assert 0.5 < estimated[path.name] / path.stat().st_size < 2, path.name
 
 
 def test_every_fault_is_found_at_once(folder):
