@@ -110,8 +110,8 @@ def _place_body(performer: Table, root: Path) -> None:
 
 
 def _take(table: Table) -> Take:
-    if table.values.get("version") != VERSION:
-        found = table.values.get("version", "none")
+    found = table.values.get("version", "none")
+    if type(found) is not int or found != VERSION:
         table.fault(f'expected "version" = {VERSION}, got {found}', f"write version = {VERSION}")
     table.refuse("locks", "remove the key")
     frames = table.frames("frames")

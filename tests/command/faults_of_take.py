@@ -101,6 +101,7 @@ _value("unknown key", "fps = 15.0", "fsp = 15.0", 'unknown key "fsp"; did you me
 _value("unknown key in a table", "units =", "unit =", 'unknown key "unit" in [cameras]', '"units"')
 _value("unknown table", "[performer]", "[perfomer]", '"perfomer"; did you mean "performer"?')
 _value("another version", "version = 1", "version = 2", 'expected "version" = 1, got 2')
+_value("a version that is no number", "version = 1", "version = true", "version", "got True")
 _value("no frame rate", "fps = 15.0", "", '"fps" is missing')
 _value("frame rate 0", "fps = 15.0", "fps = 0", "from 0.1 to 10000", "(0)")
 _value("absurd frame rate", "fps = 15.0", "fps = 1e9", "from 0.1 to 10000", "(1000000000.0)")
