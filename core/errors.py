@@ -35,6 +35,11 @@ class MocapError(Exception):
         self.frame = frame
         super().__init__(self._line())
 
+    def about(self, file: str | Path) -> "MocapError":
+        """The same fault, of ``file`` where it names none."""
+        place = {"camera": self.camera, "frame": self.frame}
+        return MocapError(self.problem, self.remedy, file=self.file or file, **place)
+
     def _line(self) -> str:
         place = [
             str(self.file) if self.file is not None else "",

@@ -230,14 +230,13 @@ def _first_fit(
         check_height(height, file)
     else:
         body = template(body)
-    first = initialised(
-        body,
-        views.cameras,
-        seen,
-        PoseRequest(take.initial_pose.kind, height, take.floor),
-        EVALUATORS[request.evaluator],
-    )
-    return replace(first, notes=(*first.notes, *check_first_fit(first, views.cameras)))
+    wanted = PoseRequest(take.initial_pose.kind, height, take.floor)
+    try:
+        first = initialised(body, views.cameras, seen, wanted, EVALUATORS[request.evaluator])
+        notes = check_first_fit(first, views.cameras)
+    except MocapError as error:
+        raise error.about(take.path) from error
+    return replace(first, notes=(*first.notes, *notes))
 
 
 def _figures(found: FrameFit, views: Views) -> FrameFigures:

@@ -188,7 +188,6 @@ def _(folder: Path):
 @VALUES.add("a body that is a pipe", "body.npz: is no ordinary file", unless=ON_UNIX)
 def _(folder: Path):
     os.mkfifo(_with_body(folder))
-    return ("info", folder / "take.toml", "--progress", "none")
 
 
 @VALUES.add("body.npz of something else", "body.npz", "body")

@@ -118,7 +118,10 @@ def test_a_finished_fit_is_told_again_when_resumed(quick_start, small_take, tmp_
     assert main(words) == 0
     first = capsys.readouterr().out
     assert main([*words, "--resume"]) == 0
-    assert capsys.readouterr().out == first
+    again = capsys.readouterr().out
+    assert again and again == "".join(
+        line for line in first.splitlines(True) if not line.startswith("wrote")
+    )
 
 
 @pytest.mark.parametrize("option", ["--sheet", "--log-file"])
