@@ -45,8 +45,7 @@ def fit_inputs(take: Take, views: Views, settings: dict[str, object]) -> Inputs:
         if values["footage"][key]:
             values["footage"][key] = os.path.relpath(values["footage"][key], take.path.parent)
     program = {key: value for key, value in versions().items() if key not in ("python", "machine")}
-    cameras = [camera.name for camera in views.cameras]
-    asked = {**settings, "frames": list(views.frames), "used_cameras": cameras}
+    asked = {**settings, "frames": list(views.frames)}
     seen: Inputs = {}
     for view in views.views:
         seen |= _view_digests(view)
@@ -97,8 +96,10 @@ def stamp_digests(names: Sequence[str], frames: np.ndarray, stamps: np.ndarray) 
 
 
 def _difference(key: str, before: str | None, now: str | None) -> str:
-    if (before or "").startswith(_DIGEST) and (now or "").startswith(_DIGEST):
-        return f"{key} has changed"
+    if (before or now or "").startswith(_DIGEST):
+        return f"{key} " + (
+            "is new" if before is None else "is gone" if now is None else "has changed"
+        )
     return f"{key} was {before or 'not given'}, now {now or 'not given'}"
 
 
