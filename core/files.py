@@ -94,6 +94,16 @@ def check_replaceable(path: Path, ours: re.Pattern[bytes]) -> None:
         raise MocapError(problem, "give another path", file=path)
 
 
+def unreadable(
+    path: Path, error: OSError, camera: str | None = None, frame: int | None = None
+) -> MocapError:
+    """The fault that ``path`` cannot be read, with the ``camera`` and ``frame`` it is for."""
+    problem, remedy = f"cannot be read ({error.strerror})", "check the file"
+    if isinstance(error, FileNotFoundError):
+        problem, remedy = "no such file", "check the path"
+    return MocapError(problem, remedy, file=path, camera=camera, frame=frame)
+
+
 def unwritable(path: Path | str, error: OSError) -> MocapError:
     """The fault that ``path`` cannot be written, and what helps against it."""
     remedy = _REMEDIES.get(error.errno or 0, "check the folder")

@@ -9,9 +9,6 @@ from pathlib import Path
 import numpy as np
 
 from .body.body import Body
-from .body.file import read_body
-from .body.kinematics import rest_height
-from .body.templates import template
 from .cameras.camera import Camera
 from .energy.evaluator import Evaluator
 from .errors import MocapError
@@ -19,7 +16,7 @@ from .files import made_folder
 from .fitting.hierarchical import SETTINGS, HierarchicalTracker
 from .fitting.tracking import FrameFit, track
 from .initialisation.first_pose import FirstFit, PoseRequest, initialised
-from .initialisation.plausibility import check_first_fit, check_height
+from .initialisation.plausibility import check_first_fit
 from .motion.overlay import Tile, overlay_picture
 from .progress import FrameFigures, Progress
 from .rendering.native import NativeEvaluator
@@ -40,6 +37,7 @@ from .results.writing import (
 )
 from .silhouettes.silhouette import Silhouette
 from .take.first_look import check_first_look
+from .take.performer import known_height, performer_body
 from .take.take import Search, Take
 from .take.views import Views, open_views
 
@@ -141,10 +139,9 @@ def _begun(
     start = initial_frames(take, views.frames)
     # before they are read, as the fit may take longer than a change of theirs
     stamps = np.stack([views.stamps(frame) for frame in start])
-    views = views.reduced(start)
+    views, seen = views.reduced_and_seen(start)
     for note in views.notes:
         progress.note(note)
-    seen = {frame: views.silhouettes(frame) for frame in start}
     looks = check_first_look(take, views, seen)
     for note in looks:
         progress.note(note)
@@ -174,7 +171,7 @@ def _begun(
 def _track(outcome: Outcome, request: FitRequest, progress: Progress) -> None:
     """Tracks what is not in the journal yet: from the initial pose on, then what comes before."""
     views, journal = outcome.views, outcome.journal
-    start = initial_frames(outcome.take, views.frames)[0]
+    start = int(journal.start.frames[0])
     setting = SETTINGS[request.search.setting][request.search.fast_motion]
     make_evaluator = EVALUATORS[request.evaluator]
     tracker = HierarchicalTracker(journal.start.body, views.cameras, make_evaluator, setting)
@@ -223,13 +220,8 @@ def initial_frames(take: Take, frames: tuple[int, int]) -> tuple[int, ...]:
 def _first_fit(
     take: Take, views: Views, seen: tuple[Silhouettes, ...], request: FitRequest
 ) -> FirstFit:
-    body, height = take.performer.body, take.performer.height_m
-    if isinstance(body, Path):
-        file, body = body, read_body(body)
-        height = height or rest_height(body)
-        check_height(height, file)
-    else:
-        body = template(body)
+    body = performer_body(take.performer)
+    height = known_height(take.performer, body)
     wanted = PoseRequest(take.initial_pose.kind, height, take.floor)
     try:
         first = initialised(body, views.cameras, seen, wanted, EVALUATORS[request.evaluator])

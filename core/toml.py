@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from .errors import MocapError
-from .files import check_ordinary
+from .files import check_ordinary, unreadable
 
 POINTS_NOT_COMMAS = "numbers need decimal points, not commas"
 MOST_BYTES = 2**20
@@ -49,12 +49,9 @@ def _text(path: Path) -> str:
             raise MocapError(problem, "check the path", file=path)
         # some editors put a byte order mark first
         return path.read_text("utf-8-sig")
-    except FileNotFoundError as error:
-        raise MocapError("no such file", "check the path", file=path) from error
     except IsADirectoryError as error:
         raise MocapError("is a folder", "name the .toml file in it", file=path) from error
     except OSError as error:
-        problem = f"cannot be read ({error.strerror})"
-        raise MocapError(problem, "check the file", file=path) from error
+        raise unreadable(path, error) from error
     except UnicodeDecodeError as error:
         raise MocapError("is not UTF-8 text", "save it as UTF-8", file=path) from error

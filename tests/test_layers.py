@@ -9,7 +9,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[1]
 # a package of core imports only itself and earlier ones
 ORDER = (
-    "errors", "files", "toml", "progress", "geometry", "pages", "cameras", "footage",
+    "errors", "files", "toml", "plain", "progress", "geometry", "pages", "cameras", "footage",
     "silhouettes", "body", "native", "energy", "rendering", "optimisers", "particles", "fitting",
     "initialisation", "motion", "take", "checking", "results", "distributed", "pipeline", "cli",
 )  # fmt: skip

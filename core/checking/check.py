@@ -3,21 +3,16 @@
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from pathlib import Path
 
-from ..body.file import read_body
-from ..body.kinematics import rest_height
-from ..body.templates import template
 from ..cameras.arrangement import opposite_pairs
-from ..cameras.calibration import CalibrationSettings, read_calibration
 from ..errors import MocapError
 from ..fitting.hierarchical import EvaluatorFactory
-from ..initialisation.plausibility import check_height
 from ..initialisation.standing import body_centre, standing_height
 from ..native.library import load
 from ..progress import SILENCE, Progress
 from ..silhouettes.silhouette import Silhouette
 from ..take.first_look import check_first_look
+from ..take.performer import known_height, performer_body
 from ..take.take import Take
 from ..take.views import TooFewCameras, Views, open_views
 from .camera_facts import CameraFacts, Performer, camera_facts, units_in_words
@@ -105,9 +100,8 @@ def checked(take: Take, request: CheckRequest) -> TakeCheck:
     faults, found = _Faults(), TakeCheck(take)
     with faults.noted():
         found = _checked_views(take, request, faults)
-    body = take.performer.body
     for check in (
-        lambda: read_body(body) if isinstance(body, Path) else template(body),
+        lambda: performer_body(take.performer),
         load,
         *request.further,
     ):
@@ -121,7 +115,8 @@ def _checked_views(take: Take, request: CheckRequest, faults: _Faults) -> TakeCh
     if views is None:
         return TakeCheck(take)
     progress.begin("check", _STEPS)
-    found = TakeCheck(take, views.frames, _units(take, views), notes=views.notes)
+    units = units_in_words(views.calibration, take.cameras.units)
+    found = TakeCheck(take, views.frames, units, notes=views.notes)
     start, silhouettes, performer = 0, (), None
     with faults.noted():
         begin = request.initial_frames(take, views.frames)
@@ -171,21 +166,9 @@ def _opened(take: Take, faults: _Faults, progress: Progress) -> Views | None:
             without.append(error.camera)
 
 
-def _units(take: Take, views: Views) -> str:
-    wanted = take.cameras
-    sizes = {view.camera.name: view.source.footage.size for view in views.views}
-    settings = CalibrationSettings(
-        wanted.format, wanted.units, wanted.up, sizes, only=frozenset(sizes)
-    )
-    return units_in_words(read_calibration(wanted.calibration, settings), wanted.units)
-
-
 def _performer(take: Take, views: Views, silhouettes: tuple[Silhouette, ...]) -> Performer:
-    centre, body = body_centre(views.cameras, silhouettes), take.performer.body
-    height = take.performer.height_m
-    if height is None and isinstance(body, Path):
-        height = rest_height(read_body(body))
-        check_height(height, body)
+    centre = body_centre(views.cameras, silhouettes)
+    height = known_height(take.performer, performer_body(take.performer))
     if height is None:
         height = standing_height(views.cameras, silhouettes, centre, take.floor)
     return Performer(centre, height)

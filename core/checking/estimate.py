@@ -7,21 +7,21 @@ of takes with four to eight cameras of 320 x 240 to 1152 x 1440 px.
 
 import time
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import cv2
 import numpy as np
 
 from ..body.body import Body
-from ..body.file import read_body
 from ..body.kinematics import rest_height
 from ..body.scaling import scaled
-from ..body.templates import template
 from ..fitting.hierarchical import SETTINGS, EvaluatorFactory, HierarchicalTracker
 from ..fitting.scores import frame_scores
 from ..initialisation.first_pose import placed
 from ..initialisation.pose_kinds import pose_of_kind
-from ..motion.overlay import Tile, overlay_picture
+from ..motion.overlay import JPEG_QUALITY, Tile, overlay_picture
 from ..silhouettes.silhouette import Silhouette
+from ..take.performer import performer_body
 from ..take.take import Take
 from ..take.views import Views
 from .camera_facts import Performer
@@ -147,10 +147,10 @@ def _tracker(trial: Trial, body: Body) -> HierarchicalTracker:
 
 
 def _standing_body(trial: Trial) -> Body:
-    wanted = trial.take.performer.body
-    if not isinstance(wanted, str):
-        return read_body(wanted)
-    body = template(wanted)
+    performer = trial.take.performer
+    body = performer_body(performer)
+    if isinstance(performer.body, Path):
+        return body
     return scaled(body, trial.performer.height_m / rest_height(body))
 
 
@@ -180,7 +180,7 @@ def _timed_picture(
     ]
     picture = overlay_picture(tiles, "frame")
     made = time.perf_counter()
-    coded = cv2.imencode(".jpg", picture, (cv2.IMWRITE_JPEG_QUALITY, 90))[1]
+    coded = cv2.imencode(".jpg", picture, JPEG_QUALITY)[1]
     coding = time.perf_counter() - made
     # decoding for the video costs as much as coding, and coding it anew twice as much
     return made - begun + 4 * coding, float(coded.size)

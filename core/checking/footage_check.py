@@ -10,7 +10,6 @@ from collections.abc import Callable, Generator, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 
-import cv2
 import numpy as np
 
 from ..errors import MocapError
@@ -181,16 +180,12 @@ def coarse_to_fine(count: int) -> Iterator[int]:
             yield spread
 
 
-def _stated_frames(video: Video) -> int:
-    """What the file's head says, which may be wrong; counting means decoding all of it."""
-    return int(cv2.VideoCapture(str(video.path), cv2.CAP_FFMPEG).get(cv2.CAP_PROP_FRAME_COUNT))
-
-
 def _facts(look: _Look, frames: tuple[int, int]) -> FootageFacts:
     view, footage, covers = look.view, look.view.source.footage, look.covers
     picture, silhouette = look.first or (None, None)
     if isinstance(footage, Video):
-        count = _stated_frames(footage)
+        # counting would mean decoding all of it
+        count = footage.stated_frames
         there = (0, count - 1)
     else:
         count = len(footage.frames)

@@ -13,15 +13,19 @@ _MOST_LINES = 100
 _SECONDS_WITHOUT_LINE = 60.0
 
 
-class BarConsole(PlainConsole):
+class _TellingConsole(PlainConsole):
+    """Shows notes, too."""
+
+    def note(self, text: str) -> None:
+        """The text as a line, above a bar."""
+        super().note(text)
+        self.line(f"note: {text}")
+
+
+class BarConsole(_TellingConsole):
     """One line that grows, and how long the rest will take."""
 
     _drawn = 0.0
-
-    def note(self, text: str) -> None:
-        """The text as a line above the bar."""
-        super().note(text)
-        self.line(f"note: {text}")
 
     def begin(self, task: str, total: int) -> None:
         """An empty bar."""
@@ -55,15 +59,10 @@ class BarConsole(PlainConsole):
         self.write(CLEAR_LINE + text[:columns])
 
 
-class LineConsole(PlainConsole):
+class LineConsole(_TellingConsole):
     """A line per frame of short tasks and per percent of long ones, and a sign of life."""
 
     _shown = 0.0
-
-    def note(self, text: str) -> None:
-        """The text as a line."""
-        super().note(text)
-        self.line(f"note: {text}")
 
     def begin(self, task: str, total: int) -> None:
         """Nothing to show yet."""

@@ -2,13 +2,13 @@
 
 import json
 import logging
-import math
 import time
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TextIO
 
 from ..errors import MocapError
+from ..plain import plain
 from ..progress import FrameFigures
 from .console import Console
 
@@ -87,7 +87,7 @@ class JsonConsole(Console):
 
     def _tell(self, event: str, **values) -> None:
         record = {"version": VERSION, "event": event, **values}
-        self.write(json.dumps(_finite(record), allow_nan=False) + "\n")
+        self.write(json.dumps(plain(record), allow_nan=False) + "\n")
 
 
 def _fit(figures: FrameFigures) -> dict:
@@ -99,14 +99,3 @@ def _fit(figures: FrameFigures) -> dict:
         "xor_px": figures.xor_px,
         "lost": figures.lost,
     }
-
-
-def _finite(value):
-    """``value`` with null for what is not finite, which JSON has no word for."""
-    if isinstance(value, dict):
-        return {key: _finite(item) for key, item in value.items()}
-    if isinstance(value, list):
-        return [_finite(item) for item in value]
-    if isinstance(value, float):
-        return round(value, 6) if math.isfinite(value) else None
-    return value

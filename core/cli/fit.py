@@ -10,12 +10,7 @@ from ..results.exporting import check_formats, export
 from ..results.folder import occupied
 from ..results.writing import FitResult
 from ..take.take import TRACKERS
-from .arguments import (
-    add_cameras_and_frames,
-    add_take,
-    format_list,
-    taken,
-)
+from .arguments import add_cameras_and_frames, add_take, format_list, taken
 from .console import say
 from .interrupts import shielded
 from .numbers import shown

@@ -3,11 +3,10 @@
 import argparse
 from pathlib import Path
 
-from ..cameras.calibration import CalibrationSettings, read_camera_names
-from ..errors import MocapError
 from ..motion.export_request import Exporter
 from ..silhouettes.plate_recipe import PlateRecipe, read_plate_recipes
 from ..take.extraction import make_plate
+from ..take.views import camera_names, check_cameras
 from .arguments import add_cameras_and_frames, add_take, taken
 
 EXAMPLE = (
@@ -29,15 +28,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace, exporter: Exporter | None) -> int:
     """Makes the plates one by one."""
     take = taken(arguments)
-    given = CalibrationSettings(take.cameras.format, take.cameras.units, take.cameras.up)
-    names = read_camera_names(take.cameras.calibration, given)
+    names = camera_names(take)
     recipes = {} if arguments.recipes is None else read_plate_recipes(arguments.recipes)
-    for file, named in ((arguments.recipes, recipes), (take.path, arguments.without)):
-        for name in named:
-            if name not in names:
-                raise MocapError(
-                    f'there is no camera "{name}"', f"the cameras are {', '.join(names)}", file=file
-                )
+    check_cameras(recipes, names, arguments.recipes or take.path)
+    check_cameras(arguments.without, names, take.path)
     used = [name for name in names if name not in arguments.without]
     console = arguments.console
     console.begin("plates", len(used))

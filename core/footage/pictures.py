@@ -12,7 +12,7 @@ import cv2
 import numpy as np
 
 from ..errors import MocapError
-from ..files import check_ordinary, made_folder, whole_file
+from ..files import check_ordinary, made_folder, unreadable, whole_file
 
 PICTURE_SUFFIXES = (
     ".png",
@@ -56,7 +56,7 @@ def read_picture(
     except FileNotFoundError as error:
         raise MocapError("no such picture", remedy or "check the path", **place) from error
     except OSError as error:
-        raise MocapError(f"cannot be read ({error.strerror})", "check the file", **place) from error
+        raise unreadable(path, error, camera, frame) from error
     if not data.size:
         raise MocapError("is an empty file", "export it again", **place)
     # unchanged keeps alpha but ignores the orientation tag, which only JPEG files carry in practice
@@ -81,12 +81,12 @@ def read_picture(
 
 
 def _is_cut_short(data: np.ndarray) -> bool:
-    """Whether nothing is there, or chunks of a PNG claim more bytes than there are.
+    """Whether chunks of a PNG claim more bytes than there are.
 
     OpenCV would take memory for what they claim.
     """
-    if not data.size or data[:8].tobytes() != _PNG_MAGIC:
-        return not data.size
+    if data[:8].tobytes() != _PNG_MAGIC:
+        return False
     place = len(_PNG_MAGIC)
     while place < data.size:
         place += _PNG_CHUNK + int.from_bytes(data[place : place + 4].tobytes(), "big")
@@ -102,10 +102,7 @@ def file_stamp(path: Path, camera: str, frame: int) -> tuple[int, int]:
     try:
         found = path.stat()
     except OSError as error:
-        problem = f"cannot be read ({error.strerror})"
-        raise MocapError(
-            problem, "check the file", file=path, camera=camera, frame=frame
-        ) from error
+        raise unreadable(path, error, camera, frame) from error
     return found.st_size, found.st_mtime_ns
 
 

@@ -90,7 +90,7 @@ class PictureSequence:
         self.camera = camera
         self._files = files
         for frame in () if asked is None else range(asked[0], asked[1] + 1):
-            self._path(frame)
+            self.file(frame)
         first = files.frames[0] if asked is None else asked[0]
         path = files.path(first)
         self.lossy = path.suffix.lower() in (".jpg", ".jpeg", ".webp")
@@ -109,7 +109,7 @@ class PictureSequence:
         Raises:
             MocapError: the file is missing, damaged or of another size than the first one.
         """
-        path = self._path(frame)
+        path = self.file(frame)
         picture = read_picture(path, self.camera, frame)
         size = (picture.shape[1], picture.shape[0])
         if size != self.size:
@@ -123,20 +123,21 @@ class PictureSequence:
             )
         return picture
 
-    def file(self, frame: int) -> Path:
-        """The picture's file."""
-        return self._path(frame)
-
     def stamp(self, frame: int) -> tuple[int, int]:
         """Size and time of change (ns) of the picture's file."""
-        return file_stamp(self._path(frame), self.camera, frame)
+        return file_stamp(self.file(frame), self.camera, frame)
 
     def pictures(self, first: int, last: int) -> Iterator[tuple[int, np.ndarray]]:
         """Frame number and picture of the frames ``first`` to ``last``, inclusive, one by one."""
         for frame in range(first, last + 1):
             yield frame, self.picture(frame)
 
-    def _path(self, frame: int) -> Path:
+    def file(self, frame: int) -> Path:
+        """The picture's file.
+
+        Raises:
+            MocapError: the frame is missing.
+        """
         frames, path = self._files.frames, self._files.path(frame)
         place = bisect_left(frames, frame)
         if place < len(frames) and frames[place] == frame:

@@ -64,11 +64,16 @@ class Video:
             count += 1
         return count
 
+    @property
+    def stated_frames(self) -> int:
+        """How many frames the file's head claims, which may be wrong."""
+        return int(self._capture.get(cv2.CAP_PROP_FRAME_COUNT))
+
     def _seems_to_reach(self, last: int) -> bool:
         """Whether the file says so and ``last`` is found at once; both may be wrong (see above)."""
         capture = self._opened()
         return (
-            capture.get(cv2.CAP_PROP_FRAME_COUNT) > last
+            self.stated_frames > last
             and capture.set(cv2.CAP_PROP_POS_FRAMES, last)
             and capture.grab()
         )
@@ -130,7 +135,7 @@ class Video:
         return capture
 
     def _ended(self, frame: int, count: int) -> MocapError:
-        promised = int(self._capture.get(cv2.CAP_PROP_FRAME_COUNT))
+        promised = self.stated_frames
         if not count:
             problem, remedy = "holds no frame that can be decoded", "export it again"
         elif promised > max(frame, count):

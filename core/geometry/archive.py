@@ -8,7 +8,7 @@ from zipfile import BadZipFile
 import numpy as np
 
 from ..errors import MocapError
-from ..files import check_ordinary, whole_file
+from ..files import check_ordinary, unreadable, whole_file
 
 # what numpy and zipfile raise on files that are cut short, changed or of another kind
 _DAMAGE = (OSError, ValueError, EOFError, TypeError, RuntimeError, BadZipFile, zlib.error)
@@ -43,6 +43,6 @@ def read_archive(path: Path, kind: str, remedy: str) -> dict[str, np.ndarray]:
         with np.load(path, allow_pickle=False) as data:
             return {name: data[name] for name in data.files}
     except FileNotFoundError as error:
-        raise MocapError("no such file", "check the path", file=path) from error
+        raise unreadable(path, error) from error
     except _DAMAGE as error:
         raise MocapError(f"cannot be read as {kind}", remedy, file=path) from error

@@ -14,6 +14,8 @@ from ..silhouettes.silhouette import Silhouette
 
 BOTH, MODEL_ONLY, OBSERVED_ONLY = (60, 200, 60), (40, 40, 240), (255, 120, 30)
 """Colours, BGR."""
+JPEG_QUALITY = (cv2.IMWRITE_JPEG_QUALITY, 90)
+"""With which overlay pictures are kept."""
 _LEGEND = ((BOTH, "both"), (MODEL_ONLY, "model only"), (OBSERVED_ONLY, "performer only"))
 _OPACITIES = {BOTH: 0.6, MODEL_ONLY: 0.9, OBSERVED_ONLY: 0.9}
 _LINE = (70, 70, 70)

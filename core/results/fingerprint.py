@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import MocapError
-from ..files import check_ordinary
+from ..files import check_ordinary, unreadable
 from ..take.take import Take
 from ..take.views import View, Views
 from .report import versions
@@ -114,12 +114,8 @@ def _contents(file: Path) -> bytes:
     check_ordinary(file)
     try:
         return file.read_bytes()
-    except FileNotFoundError as error:
-        raise MocapError("no such file", "check the path", file=file) from error
     except OSError as error:
-        raise MocapError(
-            f"cannot be read ({error.strerror})", "check the file", file=file
-        ) from error
+        raise unreadable(file, error) from error
 
 
 def _flat(values: dict, above: str = "") -> Inputs:

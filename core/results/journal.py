@@ -15,7 +15,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
 
-import cv2
 import numpy as np
 
 from ..body.body import POINT_NAMES, Body
@@ -27,12 +26,12 @@ from ..fitting.scores import LIMB_NAMES, FrameScores
 from ..fitting.tracking import FrameFit
 from ..footage.pictures import write_picture
 from ..geometry.archive import read_archive, write_archive
+from ..motion.overlay import JPEG_QUALITY
 from .fingerprint import Inputs
 
 UNFINISHED, SET_ASIDE = "unfinished", "unfinished.old"
 _START, _BODY, _FRAMES, _PICTURES = "start.npz", "body.npz", "frames.bin", "pictures"
 _ANEW = "leave out --resume to fit all frames anew"
-_QUALITY = (cv2.IMWRITE_JPEG_QUALITY, 90)
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,7 +132,7 @@ class Journal:
             MocapError: the disk refuses it, or the journal is not there any more.
         """
         self._check_own()
-        write_picture(self.picture(fit.frame), picture, _QUALITY)
+        write_picture(self.picture(fit.frame), picture, JPEG_QUALITY)
         record, stream = _packed(fit, stamps, self._kind), self._stream
         try:
             # over what a record cut short has left

@@ -14,6 +14,7 @@ import scipy
 from ..files import whole_file
 from ..fitting.tracking import FrameFit
 from ..motion.motion import Motion
+from ..plain import plain
 
 
 def fit_quality(motion: Motion, fits: Sequence[FrameFit]) -> dict:
@@ -57,23 +58,11 @@ def write_report(path: Path, report: dict) -> dict:
     Raises:
         MocapError: the file cannot be written.
     """
-    plain = {key: _plain(value) for key, value in report.items()}
-    text = json.dumps(plain, indent=1, allow_nan=False) + "\n"
+    written = {key: plain(value) for key, value in report.items()}
+    text = json.dumps(written, indent=1, allow_nan=False) + "\n"
     with whole_file(path) as partial:
         partial.write_text(text, "utf-8")
-    return plain
-
-
-def _plain(value):
-    if isinstance(value, dict):
-        return {str(key): _plain(item) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(item) for item in value]
-    if isinstance(value, np.generic):
-        value = value.item()
-    if isinstance(value, float):
-        return round(value, 6) if math.isfinite(value) else None
-    return value
+    return written
 
 
 def _mean(values: np.ndarray) -> float:

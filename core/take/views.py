@@ -11,7 +11,12 @@ import numpy as np
 
 from ..cameras.adjustment import adjusted, matched_to_footage, observed_pixels
 from ..cameras.arrangement import opposite_pairs
-from ..cameras.calibration import CalibrationSettings, read_calibration, read_camera_names
+from ..cameras.calibration import (
+    Calibration,
+    CalibrationSettings,
+    read_calibration,
+    read_camera_names,
+)
 from ..cameras.camera import Camera
 from ..cameras.undistortion import Undistortion
 from ..errors import MocapError
@@ -75,11 +80,13 @@ class Views:
         views: in the order of the cameras' names.
         frames: first and last frame, inclusive.
         notes: sentences about calibration and footage that the user should see.
+        calibration: theirs, as it was read.
     """
 
     views: tuple[View, ...]
     frames: tuple[int, int]
     notes: tuple[str, ...]
+    calibration: Calibration
 
     @property
     def cameras(self) -> tuple[Camera, ...]:
@@ -99,18 +106,16 @@ class Views:
         """(V, 2) size and time of change of the files that ``frame`` is read from."""
         return np.array([view.source.footage.stamp(frame) for view in self.views], np.int64)
 
-    def reduced(self, frames: Sequence[int]) -> "Views":
-        """The views at the resolution that fits the performer's size in ``frames``."""
-        return self.reduced_by(
-            _factors([view.source.read(f) for f in frames] for view in self.views)
-        )
-
     def reduced_and_seen(
         self, frames: Sequence[int]
     ) -> tuple["Views", dict[int, tuple[Silhouette, ...]]]:
-        """As `reduced`, and what those views see, by frame; the views are unreduced so far."""
+        """The views at the resolution that fits the performer's size in ``frames``.
+
+        And what those views see, by frame; the views are unreduced so far.
+        """
         seen = {frame: self.silhouettes(frame) for frame in frames}
-        reduced = self.reduced_by(_factors(zip(*seen.values(), strict=True)))
+        by_view = zip(*seen.values(), strict=True)
+        reduced = self.reduced_by([fitting_reduction(found).factor for found in by_view])
         return reduced, {
             frame: tuple(
                 view.reduction.silhouette(silhouette)
@@ -128,11 +133,6 @@ class Views:
         sizes = (f"{view.camera.name} {'{} x {}'.format(*view.camera.size)}" for view in views)
         _log.info("tracked at px: %s", ", ".join(sizes))
         return replace(self, views=tuple(views))
-
-
-def _factors(seen: Iterable[Sequence[Silhouette]]) -> list[int]:
-    """The reduction of each camera that fits the performer's size in what it has ``seen``."""
-    return [fitting_reduction(tuple(silhouettes)).factor for silhouettes in seen]
 
 
 class TooFewCameras(MocapError):
@@ -174,7 +174,7 @@ def open_views(
     if span is None:
         _count(footage, progress)
         span = _narrowed(take, _common(take, footage), frames)
-    return Views(views, span, tuple(notes))
+    return Views(views, span, tuple(notes), calibration)
 
 
 def camera_names(take: Take) -> tuple[str, ...]:
@@ -209,18 +209,26 @@ def _used_names(take: Take, without: Sequence[str]) -> tuple[str, ...]:
                 f"a camera called {name!r} cannot name files", "rename it",
                 file=take.cameras.calibration,
             )  # fmt: skip
-    known = ", ".join(names)
     if len(names) < _FEWEST_CAMERAS:
         raise MocapError(
-            f"holds only 1 camera, {known}", f"calibrate at least {_FEWEST_CAMERAS}",
+            f"holds only 1 camera, {names[0]}", f"calibrate at least {_FEWEST_CAMERAS}",
             file=take.cameras.calibration,
         )  # fmt: skip
-    for name in (*without, *take.cameras.adjust):
+    check_cameras((*without, *take.cameras.adjust), names, take.path)
+    return tuple(name for name in names if name not in without)
+
+
+def check_cameras(wanted: Iterable[str], names: Sequence[str], file: Path) -> None:
+    """Refuses a ``wanted`` camera that is not among the calibrated ``names``.
+
+    Raises:
+        MocapError: ``file`` names one that is not.
+    """
+    for name in wanted:
         if name not in names:
             raise MocapError(
-                f'there is no camera "{name}"', f"the cameras are {known}", file=take.path
+                f'there is no camera "{name}"', f"the cameras are {', '.join(names)}", file=file
             )
-    return tuple(name for name in names if name not in without)
 
 
 def _view(take: Take, calibrated: Camera, footage: Footage) -> View:
@@ -255,9 +263,7 @@ def _undistortion(take: Take, camera: Camera) -> Undistortion:
     try:
         return Undistortion(camera)
     except MocapError as error:
-        raise MocapError(
-            error.problem, error.remedy, file=take.cameras.calibration, camera=error.camera
-        ) from error
+        raise error.about(take.cameras.calibration) from error
 
 
 def _ignore_mask(pattern: str, camera: str, size: tuple[int, int]) -> np.ndarray:

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from ...errors import MocapError
-from ...files import whole_file
+from ...files import unreadable, whole_file
 from ..motion import Motion
 
 _METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001}
@@ -66,7 +66,7 @@ def read_trc(path: Path) -> Trajectories:
     try:
         lines = path.read_text(encoding="utf-8").splitlines()
     except FileNotFoundError as error:
-        raise MocapError("no such file", "check the path", file=path) from error
+        raise unreadable(path, error) from error
     except (OSError, UnicodeDecodeError) as error:
         raise MocapError("cannot be read as TRC", "give a .trc text file", file=path) from error
     if len(lines) < _DATA_LINE or not lines[0].startswith("PathFileType"):
