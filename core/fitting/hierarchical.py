@@ -11,9 +11,14 @@ Theobalt et al. 2003, sections 3 to 4.3. One frame is fitted from the pose of th
 
 While a part is searched, the others are rendered once and masked out (4.3), in a window about the
 part (4.2).
+
+Shared out (section 5), the limbs are searched beside each other after the torso, each followed by
+its hand or foot, all from the pose that the torso's search left; the head's search goes on
+meanwhile. That schedule gives the same result whether one thread or many work through it.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from concurrent.futures import Executor
 from copy import copy
 from dataclasses import dataclass, field, replace
 
@@ -23,12 +28,13 @@ from ..body.body import Body, Part
 from ..body.kinematics import clamped
 from ..body.limits import Limits
 from ..cameras.camera import Camera
-from ..energy.evaluator import Evaluator
+from ..energy.evaluator import Evaluator, Weights
 from ..energy.weight_maps import halved, halved_camera, xor_weight_maps
 from ..optimisers.downhill import Effort, downhill
 from ..optimisers.grid import grid_points, lowest
 from ..silhouettes.silhouette import Silhouette
 from .part_search import FORBIDDEN, PartEnergy, Tally, first_steps, part_windows, rest_prior
+from .shares import shares_of
 from .torso_volume import TorsoVolume
 
 EvaluatorFactory = Callable[[Body, tuple[Camera, ...]], Evaluator]
@@ -50,6 +56,9 @@ class HierarchicalSettings:
         effort: of each downhill search.
         prior_share: energy of one standard deviation from the rest pose, as a share of the
             silhouettes' area.
+        prerendered: whether the parts that stand still are rendered once (4.3); else every
+            candidate draws the whole body, which finds the same pose.
+        shared_out: whether the limbs are searched beside each other (section 5).
     """
 
     grid_steps: int = 5
@@ -59,6 +68,8 @@ class HierarchicalSettings:
     rounds: int = 5
     effort: Effort = field(default_factory=Effort)
     prior_share: float = 1e-3
+    prerendered: bool = True
+    shared_out: bool = False
 
 
 ROBUST = HierarchicalSettings()
@@ -92,7 +103,15 @@ class PoseFit:
 
 
 class HierarchicalTracker:
-    """Fits one frame after another; keeps no state between frames."""
+    """Fits one frame after another; keeps no state between frames.
+
+    Args:
+        body: whose pose is searched.
+        cameras: V pinhole cameras.
+        make_evaluator: of the body in cameras; called for whole and for half resolution.
+        settings: how hard to search.
+        executor: runs the limbs that are shared out, in threads; None for one after another.
+    """
 
     def __init__(
         self,
@@ -100,11 +119,13 @@ class HierarchicalTracker:
         cameras: tuple[Camera, ...],
         make_evaluator: EvaluatorFactory,
         settings: HierarchicalSettings = ROBUST,
+        executor: Executor | None = None,
     ):
         half = tuple(halved_camera(camera) for camera in cameras)
         self.body = body
         self.cameras = cameras
         self.settings = settings
+        self.executor = executor
         self.evaluator = make_evaluator(body, cameras)
         self.half_evaluator = make_evaluator(body, half)
         self.torso_volume = TorsoVolume.of(body)
@@ -128,6 +149,7 @@ class _FrameSearch:
 
     def __init__(self, tracker: HierarchicalTracker, silhouettes, last, predicted):
         self.tracker = tracker
+        self.everything = tuple(range(len(tracker.body.segment_names)))
         maps = xor_weight_maps(silhouettes)
         self.observed_px = int(maps.constants.sum())
         self.weights = tracker.evaluator.prepared(maps)
@@ -148,8 +170,10 @@ class _FrameSearch:
         rounds = 0 if self._shows_nobody() else self.tracker.settings.rounds
         for number in range(rounds):
             before, cost_before = self.pose.copy(), self.cost
-            for part in self.tracker.body.parts:
-                self._search(part, number)
+            if self.tracker.settings.shared_out:
+                self._search_shared_out(number)
+            else:
+                self._search_all(self.tracker.body.parts, number)
             self.cost = float(self._costs(self.pose[None])[0])
             if self.cost > cost_before:
                 self.pose, self.cost = before, cost_before
@@ -169,6 +193,30 @@ class _FrameSearch:
         self.pose = self.last.copy()
         self.cost = float(self._costs(self.pose[None])[0])
         return True
+
+    def _search_all(self, parts: Sequence[Part], number: int) -> None:
+        for part in parts:
+            self._search(part, number)
+
+    def _search_shared_out(self, number: int) -> None:
+        """The torso, then the limbs with their ends, all of them from the torso's pose."""
+        shares = shares_of(self.tracker.body)
+        self._search_all(shares.trunk, number)
+        run = self.tracker.executor.map if self.tracker.executor else map
+        branches = [self._branch() for _ in shares.limbs]
+        found = run(_FrameSearch._search_all, branches, shares.limbs, [number] * len(branches))
+        self._search_all(shares.rest, number)
+        list(found)
+        for branch, parts in zip(branches, shares.limbs, strict=True):
+            dofs = sorted({dof for part in parts for dof in part.dofs})
+            self.pose[dofs] = branch.pose[dofs]
+            self.tally.add(branch.tally)
+
+    def _branch(self) -> "_FrameSearch":
+        """A search that goes on from the same pose by itself."""
+        other = copy(self)
+        other.pose, other.tally = self.pose.copy(), Tally()
+        return other
 
     def _search(self, part: Part, number: int) -> None:
         settings = self.tracker.settings
@@ -196,11 +244,15 @@ class _FrameSearch:
 
     def _part_energy(self, part: Part, coarse: bool) -> PartEnergy:
         tracker, windows = self.tracker, self.windows.get(part.name)
+        segments, offset = part.segments, 0
         if coarse:
             evaluator, weights = tracker.half_evaluator, self.half_weights
         else:
             evaluator = tracker.evaluator
-            weights = evaluator.masked(self.weights, self.pose, part.segments, windows)
+            segments = part.segments if tracker.settings.prerendered else self.everything
+            weights = evaluator.masked(self.weights, self.pose, segments, windows)
+            if len(segments) > len(part.segments):
+                offset = self._outside_px(part, weights)
         return PartEnergy(
             evaluator,
             weights,
@@ -211,7 +263,16 @@ class _FrameSearch:
             windows,
             self.prior_px,
             self.tally,
+            segments,
+            offset,
         )
+
+    def _outside_px(self, part: Part, weights: Weights) -> int:
+        """Energy that the still parts have outside of the window of ``weights``."""
+        still = [s for s in self.everything if s not in part.segments]
+        energies = self.tracker.evaluator.energies
+        whole, inside = (energies(w, self.pose[None], still) for w in (self.weights, weights))
+        return int((whole - inside).sum())
 
     def _costs(self, poses: np.ndarray) -> np.ndarray:
         """(N,) energies of whole poses with the rest prior."""

@@ -27,6 +27,11 @@ class Tally:
     evaluated: int = 0
     outside_windows: int = 0
 
+    def add(self, other: "Tally") -> None:
+        """Counts what ``other`` has counted, too."""
+        self.evaluated += other.evaluated
+        self.outside_windows += other.outside_windows
+
 
 @dataclass(frozen=True, eq=False)
 class PartEnergy:
@@ -45,6 +50,9 @@ class PartEnergy:
         windows: (V, 4) px outside of which the weights are 0; None for whole pictures.
         prior_px: energy in px of one standard deviation away from the rest pose.
         tally: counts what is evaluated.
+        segments: what is drawn of each candidate; all of the body where ``weights`` hold the other
+            parts' silhouettes unmasked.
+        offset_px: added to every energy.
     """
 
     evaluator: Evaluator
@@ -56,6 +64,8 @@ class PartEnergy:
     windows: np.ndarray | None
     prior_px: float
     tally: Tally
+    segments: Sequence[int]
+    offset_px: int = 0
 
     def __call__(self, values: np.ndarray) -> np.ndarray:
         """(N,) energies of values (N, n)."""
@@ -73,12 +83,12 @@ class PartEnergy:
         return energies
 
     def _pixels(self, poses: np.ndarray) -> np.ndarray:
-        segments = self.part.segments
         self.tally.evaluated += len(poses)
         if self.windows is not None:
-            bounds = self.evaluator.bounds(poses, segments)
+            bounds = self.evaluator.bounds(poses, self.part.segments)
             self.tally.outside_windows += int(leave_windows(bounds, self.windows).sum())
-        return self.evaluator.energies(self.weights, poses, segments).sum(axis=1)
+        pixels = self.evaluator.energies(self.weights, poses, self.segments).sum(axis=1)
+        return pixels + self.offset_px
 
 
 def rest_prior(body: Body, values: np.ndarray, dofs: Sequence[int] | None = None) -> np.ndarray:

@@ -107,7 +107,16 @@ def test_candidates_inside_the_torso_are_never_rendered():
     endless = np.full(len(part.dofs), np.inf)
     free = Limits(-endless, endless, np.zeros((0, len(endless))), np.zeros(0))
     energy = PartEnergy(
-        renderer, weights, body.rest_pose, part, free, TorsoVolume.of(body), None, 0.0, tally
+        renderer,
+        weights,
+        body.rest_pose,
+        part,
+        free,
+        TorsoVolume.of(body),
+        None,
+        0.0,
+        tally,
+        part.segments,
     )
     values = np.stack([body.rest_pose, hand_in_trunk(body)])[:, list(part.dofs)]
     assert (energy(values) == FORBIDDEN).tolist() == [False, True]
