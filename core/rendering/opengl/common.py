@@ -1,0 +1,168 @@
+"""What both modes share: cameras and poses checked, fixed parts masked, bounds and transforms."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...body.body import Body
+from ...cameras.camera import Camera
+from ...energy.evaluator import WeightMaps
+from ...errors import MocapError
+from .canvas import DeviceMesh, drawing_range
+from .context import GlThread, shared_thread
+from .meshes import segment_mesh
+from .placing import Placement, Placer
+from .tiles import Tiles, clipped_windows
+
+_MOST_MESHES = 64
+
+
+@dataclass(frozen=True, eq=False)
+class MaskedMaps:
+    """Weight maps, as far as energies need them.
+
+    Attributes:
+        maps: V arrays (H, W) int16; 0 where fixed parts cover and outside of the windows.
+        constants: (V,) int64, the energy of an empty rendering, fixed parts included.
+        windows: (V, 4) px x0, y0, x1, y1; nothing lies outside.
+    """
+
+    maps: tuple[np.ndarray, ...]
+    constants: np.ndarray
+    windows: np.ndarray
+
+
+class OpenGLBase:
+    """A body and cameras, and the thread that draws the one as seen by the others.
+
+    Args:
+        body: the model.
+        cameras: V pinhole cameras, of any sizes.
+        level: which of the body's surfaces to draw.
+        thread: the thread with the context; by default the one that all share.
+
+    Raises:
+        ValueError: a camera with lens distortion, or none.
+        MocapError: there is no OpenGL, or it is too old, or a picture is too large for it.
+    """
+
+    version = (3, 3)
+    """Of OpenGL, at least."""
+
+    def __init__(
+        self,
+        body: Body,
+        cameras: Sequence[Camera],
+        level: int = 0,
+        thread: GlThread | None = None,
+    ):
+        if not cameras or not all(camera.is_pinhole for camera in cameras):
+            raise ValueError("expected at least one camera, all of them pinhole")
+        self.body, self.cameras, self.level = body, tuple(cameras), level
+        self.thread = thread or shared_thread()
+        if self.thread.version < self.version:
+            have, need = (".".join(map(str, v)) for v in (self.thread.version, self.version))
+            raise MocapError(
+                f"OpenGL {have} ({self.thread.renderer}) is older than {need}",
+                "choose another evaluator",
+            )
+        self._sizes = np.array([camera.size for camera in cameras], np.int64)
+        self._range = self.thread.call(drawing_range, self.thread.gl)
+        if self._sizes.max() > self._range.largest:
+            raise MocapError(
+                f"OpenGL draws pictures of at most {self._range.largest} px here, "
+                f"got {self._sizes.max()}", "choose another evaluator",
+            )  # fmt: skip
+        self._placer = Placer(body, cameras, level)
+        self._meshes: dict[tuple[int, ...], DeviceMesh] = {}
+
+    def transforms(self, poses: np.ndarray) -> np.ndarray:
+        """(N, J, 3, 4) float64 world from joint of poses (N, D)."""
+        poses = self._checked(poses)
+        if poses.ndim == 3:
+            raise ValueError("expected poses (N, D)")
+        return self._placer.transforms(poses)[0]
+
+    def bounds(self, poses: np.ndarray, segments: Sequence[int]) -> np.ndarray:
+        """(N, V, 4) int: x0, y0, x1, y1 (exclusive), px that the segments can cover, unclipped.
+
+        The whole guard region (16,000 px either way) where a segment leaves it or comes too near.
+        """
+        transforms = self._placer.transforms(self._checked(poses))
+        return self._placer.bounds(transforms, self._chosen(segments))
+
+    def silhouettes(
+        self, pose: np.ndarray, segments: Sequence[int] | None = None
+    ) -> tuple[np.ndarray, ...]:
+        """V boolean pictures (H, W), True where the body covers the pixel's centre."""
+        pose = self._checked(np.asarray(pose, float)[None])
+        chosen = self._chosen(segments)
+        return self.thread.call(self._draw_silhouettes, pose, chosen)
+
+    def _draw_silhouettes(
+        self, pose: np.ndarray, segments: tuple[int, ...]
+    ) -> tuple[np.ndarray, ...]:
+        raise NotImplementedError
+
+    def _whole(self, maps: WeightMaps) -> MaskedMaps:
+        shapes = [camera.size[::-1] for camera in self.cameras]
+        if [np.shape(weight_map) for weight_map in maps.maps] != shapes:
+            raise ValueError(f"expected weight maps of shapes {shapes}")
+        constants = np.array(maps.constants, np.int64)
+        if constants.shape != (len(shapes),):
+            raise ValueError("expected one constant per view")
+        narrow = tuple(np.ascontiguousarray(weight_map, np.int16) for weight_map in maps.maps)
+        return MaskedMaps(narrow, constants, clipped_windows(self._sizes, None))
+
+    def _masked(
+        self,
+        before: MaskedMaps,
+        pose: np.ndarray,
+        moving: Sequence[int],
+        windows: np.ndarray | None,
+    ) -> MaskedMaps:
+        fixed = sorted(set(range(len(self.body.segment_names))) - {int(s) for s in moving})
+        within = clipped_windows(self._sizes, windows)
+        low = np.maximum(within[:, :2], before.windows[:, :2])
+        high = np.maximum(np.minimum(within[:, 2:], before.windows[:, 2:]), low)
+        maps, constants = [], before.constants.copy()
+        covered = self.silhouettes(pose, fixed)
+        for v, (weight_map, picture) in enumerate(zip(before.maps, covered, strict=True)):
+            constants[v] += weight_map[picture].sum(dtype=np.int64)
+            left = np.zeros_like(weight_map)
+            part = np.s_[low[v, 1] : high[v, 1], low[v, 0] : high[v, 0]]
+            left[part] = np.where(picture[part], 0, weight_map[part])
+            maps.append(left)
+        return MaskedMaps(tuple(maps), constants, np.concatenate([low, high], axis=1))
+
+    def _placed(self, transforms: np.ndarray, segments: tuple[int, ...], tiles: Tiles) -> Placement:
+        """The segments in the tiles' windows, of transforms (V or 1, N, J, 3, 4)."""
+        # snapping may move a vertex by half a step
+        margin = self._range.margin - 1
+        return self._placer.placed(transforms, segments, tiles.views, tiles.windows, margin)
+
+    def _mesh(self, segments: tuple[int, ...]) -> DeviceMesh:
+        """The segments' mesh; in the thread only."""
+        if segments not in self._meshes:
+            if len(self._meshes) >= _MOST_MESHES:
+                del self._meshes[next(iter(self._meshes))]
+            mesh = segment_mesh(self._placer.surface, segments)
+            self._meshes[segments] = DeviceMesh(self.thread, mesh)
+        return self._meshes[segments]
+
+    def _chosen(self, segments: Sequence[int] | None) -> tuple[int, ...]:
+        count = len(self.body.segment_names)
+        chosen = tuple(range(count)) if segments is None else tuple(map(int, segments))
+        if any(not 0 <= segment < count for segment in chosen):
+            raise ValueError(f"expected segments below {count}, got {chosen}")
+        return chosen
+
+    def _checked(self, poses: np.ndarray) -> np.ndarray:
+        """float64 poses (N, D) or (N, V, D)."""
+        poses = np.ascontiguousarray(poses, float)
+        dofs, views = len(self.body.dofs), len(self.cameras)
+        if poses.shape[1:] not in ((dofs,), (views, dofs)):
+            wanted = f"(N, {dofs}) or (N, {views}, {dofs})"
+            raise ValueError(f"expected poses of shape {wanted}, got {poses.shape}")
+        return poses

@@ -1,0 +1,127 @@
+"""GPU mode: many candidates in one drawing, XOR and sums on the device, one small read-back.
+
+All views lie side by side in one large picture of 32-bit words, and every candidate owns one bit
+of them: drawing or-s the bit into the words that a candidate covers, so that 32 candidates share
+their pixels, and further groups of 32 lie in further blocks. Then a compute shader adds up the
+weights of the pixels that each candidate covers in each view (energy = constant + sum, see
+energy/evaluator.py).
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ...energy.evaluator import WeightMaps
+from .atlas import Atlas, DeviceTiles
+from .common import MaskedMaps, OpenGLBase
+from .gpu_shaders import CANDIDATES
+from .placing import Placement
+from .tiles import clipped_windows, packed
+
+_MOST_CANDIDATES = 4096
+
+
+@dataclass(frozen=True, eq=False)
+class GpuWeights:
+    """Weight maps on the device.
+
+    Attributes:
+        masked: the maps as they are.
+        blocks: their tiles, block by block.
+    """
+
+    masked: MaskedMaps
+    blocks: tuple[DeviceTiles, ...] = field(repr=False)
+
+    @property
+    def constants(self) -> np.ndarray:
+        """(V,) int64, the energy of an empty rendering, fixed parts included."""
+        return self.masked.constants
+
+
+class OpenGLEvaluator(OpenGLBase):
+    """Energies and silhouettes by a graphics processor; see `energy.evaluator.Evaluator`.
+
+    May be called from several threads at once; they take turns. What a call returns depends on
+    nothing but its arguments. Arguments and faults are those of `OpenGLBase`.
+    """
+
+    version = (4, 3)
+
+    def __init__(self, *arguments, **keywords):
+        super().__init__(*arguments, **keywords)
+        self._atlas = self.thread.kept(Atlas)
+        self._pictures: tuple[DeviceTiles, ...] = ()
+
+    def prepared(self, maps: WeightMaps) -> GpuWeights:
+        """The maps in the device's memory."""
+        return self._on_device(self._whole(maps))
+
+    def masked(
+        self,
+        weights: GpuWeights,
+        pose: np.ndarray,
+        moving: Sequence[int],
+        windows: np.ndarray | None = None,
+    ) -> GpuWeights:
+        """Weights under which the ``moving`` segments alone give the full energy.
+
+        ``pose`` may be (V, D) as well, one pose per view.
+        """
+        return self._on_device(self._masked(weights.masked, pose, moving, windows))
+
+    def energies(
+        self, weights: GpuWeights, poses: np.ndarray, segments: Sequence[int] | None = None
+    ) -> np.ndarray:
+        """(N, V) int64 energies of poses (N, D) or (N, V, D), of all or the given segments."""
+        poses, chosen = self._checked(poses), self._chosen(segments)
+        energies = np.repeat(weights.constants[None], len(poses), axis=0)
+        for begin in range(0, len(poses), _MOST_CANDIDATES):
+            part = slice(begin, begin + _MOST_CANDIDATES)
+            transforms = self._placer.transforms(poses[part])
+            for tiles in weights.blocks:
+                sums = self._sums(tiles, transforms, chosen)
+                energies[part, tiles.tiles.views] += sums
+        return energies
+
+    def _sums(
+        self, tiles: DeviceTiles, transforms: np.ndarray, segments: tuple[int, ...]
+    ) -> np.ndarray:
+        """(N, k) int64 sums of the weights that each candidate covers in each tile."""
+        count = transforms.shape[1]
+        step = CANDIDATES * self._atlas.most_groups(tiles.tiles.size)
+        parts = [np.zeros((0, len(tiles.tiles.views)), np.int64)]
+        for begin in range(0, count, step):
+            placement = self._placed(transforms[:, begin : begin + step], segments, tiles.tiles)
+            parts.append(self.thread.call(self._add_up, tiles, placement, segments))
+        return np.concatenate(parts)
+
+    def _add_up(
+        self, tiles: DeviceTiles, placement: Placement, segments: tuple[int, ...]
+    ) -> np.ndarray:
+        self._atlas.draw(self._mesh(segments), tiles, placement)
+        return self._atlas.sums(tiles, placement.states.shape[1])
+
+    def _draw_silhouettes(
+        self, pose: np.ndarray, segments: tuple[int, ...]
+    ) -> tuple[np.ndarray, ...]:
+        if not self._pictures:
+            self._pictures = self._blocks(clipped_windows(self._sizes, None), None)
+        transforms, found = self._placer.transforms(pose), {}
+        for tiles in self._pictures:
+            placement = self._placed(transforms, segments, tiles.tiles)
+            self._atlas.draw(self._mesh(segments), tiles, placement)
+            words = self._atlas.words(tiles)
+            for view, (x0, y0, x1, y1) in zip(tiles.tiles.views, tiles.tiles.areas, strict=True):
+                found[view] = words[y0:y1, x0:x1] != 0
+        return tuple(found[view] for view in range(len(self.cameras)))
+
+    def _on_device(self, masked: MaskedMaps) -> GpuWeights:
+        return GpuWeights(masked, self.thread.call(self._blocks, masked.windows, masked.maps))
+
+    def _blocks(
+        self, windows: np.ndarray, maps: tuple[np.ndarray, ...] | None
+    ) -> tuple[DeviceTiles, ...]:
+        blocks = packed(windows, self._range.largest, self._atlas.most_px)
+        return tuple(DeviceTiles(self.thread, self._range, tiles, maps) for tiles in blocks)
