@@ -7,9 +7,8 @@ SHELL := /bin/bash
 MOCAP := .venv/bin/silhouette-mocap
 KERNEL := $(wildcard core/native/build.py core/native/*.c core/native/*.h)
 CORE_TESTS := tests/core tests/test_layers.py
-PROTOTYPES ?= $(wildcard ../shared/prototypes)
 
-.PHONY: help env demo demo-real test lint test-core test-command test-addon bench fuzz long-take blender clean
+.PHONY: help env demo demo-real test lint test-core test-command test-addon bench speed fuzz long-take blender clean
 
 help: ## This list
 	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /make \1\t/' | expand -t 18
@@ -58,11 +57,11 @@ test-addon: env
 	.venv/bin/python -m pytest -q -n 2 tests/addon
 	.venv-3.13/bin/python -m pytest -q -n 2 tests/addon
 
-bench: .venv/.ready ## Speed of the energy, beside frozen baselines where they are at hand
-ifneq ($(PROTOTYPES),)
-	@.venv/bin/python -c 'import numba' 2>/dev/null || .venv/bin/python -m pip install -q numba==0.61.2
-endif
-	@.venv/bin/python tests/benchmarks/energy.py $(addprefix --prototypes ,$(PROTOTYPES))
+bench: .venv/.ready ## Tables 1 and 2 of the 2003 paper on this machine, into out/bench
+	@$(MOCAP) bench energy --json out/bench/energy.json --out out/bench
+
+speed: ## Put what make bench measured into the README
+	@.venv/bin/python .ci/speed.py out/bench
 
 fuzz: .venv/.ready ## 10,000 damaged takes, calibrations and masks through a real command
 	@cd tests && ../.venv/bin/python -m benchmarks.fuzz --cases 10000

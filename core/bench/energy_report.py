@@ -1,0 +1,137 @@
+"""What is written of `EnergyFigures`: the numbers as JSON."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from . import against_prototypes as prototype
+from .energy import EnergyFigures
+from .rows import EXACT, LOD, PAPER_GL, TWO_THREADS, WEIGHTED
+from .table1 import PAPER_RATES, WAYS, Measured
+from .table2 import PAPER_EVALUATIONS, PAPER_SECONDS
+from .turns import Rates
+
+LEVELS = {"exact": EXACT, "lod": LOD}
+PARTS = {"whole": "full", "limb": "limb", "hand": "hand"}
+"""Part to the cell of Table 1 that shows it."""
+PRERENDERED = WAYS[1]
+Ratios = dict[str, dict[str, float | None]]
+
+
+def as_dict(figures: EnergyFigures) -> dict:
+    """All figures for JSON; ratios are medians over the turns, None where a side is missing."""
+    first = next(iter(figures.table1.values()))
+    per_size = {size: weighted_ratios(table) for size, table in figures.table1.items()}
+    kern = {size: ratios_to_kern_c(parts) for size, parts in figures.prototypes.items()}
+    gl_eval = {size: ratios_to_gl_eval(parts) for size, parts in figures.prototypes.items()}
+    levels = figures.levels.as_dict()
+    return {
+        "machine": figures.machine,
+        "notes": figures.notes,
+        "triangles": dict(zip(LEVELS, figures.triangles, strict=True)),
+        "ratio_to_paper_gl": ratios_in(first, PAPER_GL),
+        "ratio_to_kern_c": next(iter(kern.values()), _nothing()),
+        "ratio_to_gl_eval": next(iter(gl_eval.values()), _nothing()),
+        "ratio_to_paper_gl_by_size": {
+            size: ratios_in(table, PAPER_GL) for size, table in figures.table1.items()
+        },
+        "ratio_to_kern_c_by_size": kern,
+        "ratio_to_gl_eval_by_size": gl_eval,
+        "two_threads": two_thread_ratios(first),
+        "weighted_ratio": {size: ratios["lod"]["whole"] for size, ratios in per_size.items()},
+        "weighted_ratio_by_part": per_size,
+        "lod_mask_xor": levels["mask_xor"]["max"],
+        "lod_energy_difference": levels["energy_difference"]["max"],
+        "lod_pose_change_mm": levels["pose_change_mm"]["mean"],
+        "lod_pose_change_max_mm": levels["pose_change_mm"]["max"],
+        "lod": levels,
+        "table1": {size: _table1(table) for size, table in figures.table1.items()},
+        "table1_2003": {
+            cell: dict(zip(WAYS, rates, strict=True)) for cell, rates in PAPER_RATES.items()
+        },
+        "cameras": {row: costs.as_dict() for row, costs in figures.cameras.items()},
+        "table2": {
+            name: {way: fits.as_dict() for way, fits in ways.items()}
+            for name, ways in figures.table2.items()
+        },
+        "table2_2003": {
+            "seconds_per_frame": PAPER_SECONDS,
+            "most_evaluations_per_frame": PAPER_EVALUATIONS,
+        },
+        "same_poses_without_prerendering": {
+            name: bool(np.array_equal(ways["xor"].poses, ways["prerendered"].poses))
+            for name, ways in figures.table2.items()
+        },
+        "prototypes": {
+            size: {part: _rates(rates) for part, rates in parts.items()}
+            for size, parts in figures.prototypes.items()
+        },
+    }
+
+
+def ratios_in(table: Measured, base: str) -> Ratios:
+    """How many times as fast our rows are as the row ``base``, pre-rendered."""
+    return {
+        level: {part: table[cell, PRERENDERED].ratio(name, base) for part, cell in PARTS.items()}
+        for level, name in LEVELS.items()
+    }
+
+
+def weighted_ratios(table: Measured) -> Ratios:
+    """Speed with any weights as a share of that with ±1."""
+    return _own_ratios(table, WEIGHTED)
+
+
+def two_thread_ratios(table: Measured) -> Ratios:
+    """Speed of two threads as a multiple of one's."""
+    return _own_ratios(table, TWO_THREADS)
+
+
+def ratios_to_kern_c(parts: dict[str, Rates]) -> Ratios:
+    """Exact against the winding kernel on the full mesh, coarse against the best on the coarse."""
+    return {
+        "exact": {part: rates.ratio(EXACT, prototype.KERN_EXACT) for part, rates in parts.items()},
+        "lod": {part: _to_best(rates, prototype.KERN_COARSE) for part, rates in parts.items()},
+    }
+
+
+def ratios_to_gl_eval(parts: dict[str, Rates]) -> Ratios:
+    """Both levels against the prototype's OpenGL as in the paper."""
+    return {
+        level: {part: rates.ratio(name, prototype.GL_EVAL) for part, rates in parts.items()}
+        for level, name in LEVELS.items()
+    }
+
+
+def _to_best(rates: Rates, names: Sequence[str]) -> float | None:
+    best = rates.best(names)
+    return None if best is None else rates.ratio(LOD, best)
+
+
+def _own_ratios(table: Measured, suffix: str) -> Ratios:
+    return {
+        level: {
+            part: table[cell, PRERENDERED].ratio(name + suffix, name)
+            for part, cell in PARTS.items()
+        }
+        for level, name in LEVELS.items()
+    }
+
+
+def _nothing() -> Ratios:
+    return {level: dict.fromkeys(PARTS) for level in LEVELS}
+
+
+def _table1(table: Measured) -> dict:
+    found: dict = {}
+    for (cell, way), rates in table.items():
+        found.setdefault(cell, {})[way] = _rates(rates)
+    return found
+
+
+def _rates(rates: Rates) -> dict:
+    values = zip(rates.medians.items(), rates.batches, rates.differences, strict=True)
+    return {
+        name: {"per_second": rate, "batch": batch, "differs_px": difference}
+        for (name, rate), batch, difference in values
+    }

@@ -1,0 +1,124 @@
+"""Table 1 of Theobalt et al. 2003: energies per second in windows of four sizes.
+
+The whole body is drawn at full and half resolution, an arm in a window of 128 x 128 px and a hand
+in one of 64 x 64 px. XOR draws the whole body for every candidate; with pre-rendering (XORPR) the
+parts that stand still are drawn once and masked out. In the first two cells everything moves, so
+that both are one and the same.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..body.body import Body
+from ..cameras.camera import Camera
+from ..rendering.native import NativeEvaluator
+from .rows import Row, full_level, variant
+from .stage import PART_SPREAD, WHOLE_SPREAD, Stage, candidates_about, filmed, part_named, studio
+from .turns import Rates, Turns, measured
+
+PAPER_RATES = {
+    "full": (95.9, 95.5),
+    "half": (131.1, 131.2),
+    "limb": (133.7, 433.1),
+    "hand": (144.9, 855.4),
+}
+"""XOR and XORPR on a GeForce3 and a 1.8 GHz Xeon; the paper's smallest window holds the head."""
+
+
+@dataclass(frozen=True)
+class Cell:
+    """A window of the table.
+
+    Attributes:
+        name: in files.
+        title: in tables, at 320 x 240.
+        part: of the body that moves; None for all of it.
+        side: px of the window at 240 lines; None for the whole picture.
+        scale: of the pictures.
+    """
+
+    name: str
+    title: str
+    part: str | None = None
+    side: int | None = None
+    scale: float = 1.0
+
+
+CELLS = (
+    Cell("full", "full"),
+    Cell("half", "half", scale=0.5),
+    Cell("limb", "128² (arm)", "left_arm", 128),
+    Cell("hand", "64² (hand)", "left_hand", 64),
+)
+WAYS = ("xor", "prerendered")
+Measured = dict[tuple[str, str], Rates]
+"""Cell and way to what was measured there."""
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """What Table 1 is measured with, at any resolution.
+
+    Attributes:
+        body: the model.
+        pose: (D,) that candidates lie about.
+        seen: (D,) the pose that was observed.
+    """
+
+    body: Body
+    pose: np.ndarray
+    seen: np.ndarray
+
+    def stage(self, cameras: tuple[Camera, ...]) -> Stage:
+        """The scene before these cameras."""
+        full = NativeEvaluator(self.body, cameras, full_level(self.body))
+        return Stage(full, self.pose, filmed(full, self.seen))
+
+
+def table1(
+    scene: Scene,
+    size: tuple[int, int],
+    rows: Sequence[Row],
+    turns: Turns,
+    advance: Callable[[], None],
+) -> Measured:
+    """All cells at one resolution (width, height); ``advance`` is called after each."""
+    found: Measured = {}
+    for scale in dict.fromkeys(cell.scale for cell in CELLS):
+        stage = scene.stage(studio((int(size[0] * scale), int(size[1] * scale))))
+        evaluators = {row.make: row.make(stage.body, stage.cameras) for row in rows}
+        for cell in CELLS:
+            if cell.scale != scale:
+                continue
+            for way in WAYS:
+                found[cell.name, way] = _rates(stage, cell, way, rows, evaluators, turns)
+                advance()
+    return {(cell.name, way): found[cell.name, way] for cell in CELLS for way in WAYS}
+
+
+def _rates(
+    stage: Stage,
+    cell: Cell,
+    way: str,
+    rows: Sequence[Row],
+    evaluators: dict[Any, Any],
+    turns: Turns,
+) -> Rates:
+    part = None if cell.part is None else part_named(stage.body, cell.part)
+    moved = range(len(stage.body.dofs)) if part is None else part.dofs
+    spread = WHOLE_SPREAD if part is None else PART_SPREAD
+    windows = None
+    if part is not None and cell.side is not None:
+        windows = stage.windows(part, cell.side)
+    prerendered = part is not None and way == "prerendered"
+    drawn = part.segments if part is not None and prerendered else stage.everything
+    variants = [variant(row, evaluators[row.make], stage, drawn, windows) for row in rows]
+    return measured(variants, candidates_about(stage.pose, moved, spread, turns.poses), turns)
+
+
+def triangles(body: Body) -> int:
+    """Of the finest surface."""
+    return len(body.surfaces[full_level(body)].triangles)

@@ -1,0 +1,178 @@
+"""A tiny run of the whole benchmark, and what is written of it."""
+
+import json
+import re
+import xml.etree.ElementTree as ElementTree
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from silhouette_mocap.core.bench import energy
+from silhouette_mocap.core.bench.cameras import CameraCosts
+from silhouette_mocap.core.bench.energy import EnergySettings, energy_figures
+from silhouette_mocap.core.bench.energy_files import write_energy_files
+from silhouette_mocap.core.bench.energy_report import as_dict
+from silhouette_mocap.core.bench.markdown import lined
+from silhouette_mocap.core.bench.plots import Bars, bars_picture
+from silhouette_mocap.core.bench.rows import Row
+from silhouette_mocap.core.bench.turns import Turns
+from silhouette_mocap.core.cli import main
+from silhouette_mocap.core.progress import SILENCE, Silence
+from silhouette_mocap.core.rendering.native import NativeEvaluator
+from silhouette_mocap.core.results.report import write_report
+
+TINY = EnergySettings(Turns(1, 0.001, 64, 16), ((64, 48),), camera_counts=(2, 3), frames=1, fits=1)
+RATIO_KEYS = {"exact": {"whole", "limb", "hand"}, "lod": {"whole", "limb", "hand"}}
+
+
+class Counting(Silence):
+    """Progress that counts."""
+
+    def __init__(self):
+        self.total, self.done, self.notes = 0, 0, []
+
+    def begin(self, task, total):
+        self.total = total
+
+    def advance(self, frame, figures=None):
+        self.done += 1
+
+    def note(self, text):
+        self.notes.append(text)
+
+
+def paper_row(note):
+    """The kernel in the place of OpenGL as in the paper."""
+    note("no rows for OpenGL: none is wanted here")
+    return [Row("opengl_paper", "OpenGL as in the paper", lambda b, c: NativeEvaluator(b, c, 1))]
+
+
+@pytest.fixture(scope="module")
+def progress():
+    return Counting()
+
+
+@pytest.fixture(scope="module")
+def figures(progress):
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(energy, "opengl_rows", paper_row)
+        return energy_figures(TINY, progress)
+
+
+@pytest.fixture(scope="module")
+def report(figures, tmp_path_factory):
+    path = tmp_path_factory.mktemp("bench") / "energy.json"
+    write_report(path, as_dict(figures))
+    return json.loads(path.read_text("utf-8"))
+
+
+def test_progress_counts_every_step_and_tells_what_is_left_out(figures, progress):
+    assert progress.done == progress.total == TINY.steps
+    assert any("prototypes" in note for note in progress.notes)
+    assert list(figures.notes) == progress.notes
+
+
+def test_ratios_hold_every_part_of_both_levels(report):
+    for key in ("ratio_to_paper_gl", "ratio_to_kern_c", "ratio_to_gl_eval", "two_threads"):
+        assert {level: set(parts) for level, parts in report[key].items()} == RATIO_KEYS, key
+    assert report["ratio_to_paper_gl"]["lod"]["whole"] > 1
+    assert set(report["ratio_to_paper_gl_by_size"]) == {"64x48"}
+    assert set(report["weighted_ratio"]) == {"64x48"}
+    assert all(value > 0 for value in report["weighted_ratio"].values())
+
+
+def test_without_the_prototypes_their_ratios_are_null(report):
+    assert report["ratio_to_kern_c"]["exact"]["whole"] is None
+    assert report["prototypes"] == {}
+
+
+def test_the_coarse_mesh_is_judged_in_three_ways(report):
+    assert 0 < report["lod_mask_xor"] < 0.2
+    assert 0 <= report["lod_energy_difference"] < 0.05
+    assert 0 <= report["lod_pose_change_mm"] <= report["lod_pose_change_max_mm"]
+
+
+def test_table_1_has_every_window_with_and_without_prerendering(report):
+    for table in report["table1"].values():
+        assert set(table) == {"full", "half", "limb", "hand"}
+        for ways in table.values():
+            assert set(ways) == {"xor", "prerendered"}
+            assert all(row["per_second"] > 0 for row in ways["xor"].values())
+    assert report["triangles"]["exact"] >= 21422
+
+
+def test_full_mesh_rows_agree_to_the_pixel(report):
+    for table in report["table1"].values():
+        for ways in table.values():
+            for row in ("native_exact", "native_exact_two_threads"):
+                assert ways["prerendered"][row]["differs_px"] == 0
+
+
+def test_table_2_has_both_sequences_and_the_same_poses_with_and_without_prerendering(report):
+    assert report["same_poses_without_prerendering"] == {"A": True, "B": True}
+    for ways in report["table2"].values():
+        assert set(ways) == {"xor", "prerendered", "shared_out"}
+        assert ways["xor"]["evaluations_per_frame"] == ways["prerendered"]["evaluations_per_frame"]
+        assert ways["xor"]["error_mm"] == ways["prerendered"]["error_mm"]
+
+
+def test_the_machine_is_named(report):
+    assert {"processor", "cores", "python", "opengl"} <= set(report["machine"])
+
+
+def test_files_are_whole_tables_and_pictures(figures, tmp_path):
+    paths = write_energy_files(figures, tmp_path)
+    assert {p.name for p in paths} >= {"energy.md", "readme.md", "speed.svg", "cameras.svg"}
+    for path in paths:
+        if path.suffix == ".svg":
+            ElementTree.fromstring(path.read_text("utf-8"))
+    text = (tmp_path / "energy.md").read_text("utf-8")
+    for block in re.findall(r"(?:^\|.*\|$\n?)+", text, re.MULTILINE):
+        assert len({line.count("|") for line in block.splitlines()}) == 1
+    for name in re.findall(r"!\[.*?\]\((.*?)\)", text):
+        assert (tmp_path / name).is_file()
+
+
+def test_a_table_is_lined_with_numbers_to_the_right():
+    assert lined(["", "s"], [["a", "1"]]) == "|  | s |\n| --- | ---: |\n| a | 1 |"
+
+
+def test_costs_on_a_line_have_no_residual_and_others_have():
+    counts = [2, 4, 8]
+    costs = CameraCosts.fitted(counts, [5e-6 + 3e-6 * n for n in counts])
+    assert costs.per_camera == pytest.approx(3e-6)
+    assert costs.fixed == pytest.approx(5e-6)
+    assert costs.largest_residual < 1e-9
+    bent = CameraCosts.fitted(counts, [n**2 for n in counts])
+    assert bent.largest_residual == pytest.approx(np.abs(1 - bent.seconds / bent.line).max())
+    assert bent.largest_residual > 0.1
+
+
+def test_bars_are_as_long_as_the_logarithm_of_their_values():
+    bars = Bars("t", "u", {"a": {"x": 10.0}, "b": {"x": 100.0}, "c": {"x": 1000.0, "y": None}})
+    picture = ElementTree.fromstring(bars_picture(bars))
+    shapes = picture.findall(".//{http://www.w3.org/2000/svg}rect")
+    wide = [float(s.attrib["width"]) for s in shapes if s.attrib.get("height") == "11"]
+    assert len(wide) == 3
+    assert wide[2] == pytest.approx(2 * wide[1], rel=0.01)
+
+
+def test_a_folder_without_prototypes_is_refused_in_one_line(tmp_path, capsys):
+    assert main(["bench", "energy", "--prototypes", str(tmp_path)]) == 2
+    assert "does not hold the prototypes" in capsys.readouterr().err
+
+
+def test_the_command_writes_what_it_measured(monkeypatch, tmp_path, capsys, figures):
+    monkeypatch.setattr(
+        "silhouette_mocap.core.cli.bench.energy_figures", lambda settings, progress: figures
+    )
+    words = ["bench", "energy", "--json", str(tmp_path / "new" / "e.json"), "--out", str(tmp_path)]
+    assert main(words) == 0
+    assert "Table 1 at 64x48" in capsys.readouterr().out
+    assert "ratio_to_paper_gl" in json.loads((tmp_path / "new" / "e.json").read_text("utf-8"))
+
+
+def test_settings_count_the_comparisons_with_prototypes(tmp_path):
+    with_them = replace(TINY, prototypes=tmp_path)
+    assert with_them.steps == TINY.steps + 3
+    assert energy._prototype_figures(with_them, SILENCE.note, lambda: None) == {}
