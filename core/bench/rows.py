@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -11,6 +10,9 @@ from ..body.body import Body
 from ..cameras.camera import Camera
 from ..errors import MocapError
 from ..rendering.native import NativeEvaluator
+from ..rendering.opengl.context import shared_thread
+from ..rendering.opengl.gpu import OpenGLEvaluator
+from ..rendering.opengl.paper import PaperEvaluator
 from .hulls import HullEvaluator
 from .stage import Stage
 from .turns import Variant
@@ -75,21 +77,23 @@ def hull_rows() -> list[Row]:
 def opengl_rows(note: Callable[[str], None]) -> list[Row]:
     """OpenGL as in the paper and as on today's cards; none where there is no OpenGL."""
     try:
-        paper = import_module("..rendering.opengl.paper", __package__).PaperEvaluator
-        gpu = import_module("..rendering.opengl.gpu", __package__).OpenGLEvaluator
-    except (ImportError, MocapError) as error:
+        shared_thread()
+    except MocapError as error:
         note(f"no rows for OpenGL: {error}")
         return []
     return [
-        Row(PAPER_GL, "OpenGL as in the paper, full mesh", _at(paper, full_level)),
-        Row("opengl_gpu", "OpenGL, batched, full mesh", _at(gpu, full_level)),
-        Row("opengl_gpu_lod", "OpenGL, batched, coarse mesh", _at(gpu, coarse_level)),
+        Row(PAPER_GL, "OpenGL as in the paper, full mesh", _at(PaperEvaluator, full_level)),
+        Row("opengl_gpu", "OpenGL, batched, full mesh", _at(OpenGLEvaluator, full_level)),
+        Row("opengl_gpu_lod", "OpenGL, batched, coarse mesh", _at(OpenGLEvaluator, coarse_level)),
     ]
 
 
 def opengl_renderer() -> str | None:
     """OpenGL's name for what draws; None where there is no OpenGL."""
-    return None
+    try:
+        return shared_thread().renderer
+    except MocapError:
+        return None
 
 
 def variant(

@@ -77,9 +77,10 @@ class PartEnergy:
             allowed[allowed] = ~self.torso.holds_part(transforms, self.part)
         energies = np.full(len(values), FORBIDDEN)
         if allowed.any():
-            prior = rest_prior(self.evaluator.body, values[allowed], self.part.dofs)
-            pixels = self._pixels(poses[allowed])
-            energies[allowed] = np.round(pixels + self.prior_px * prior, 6)
+            energies[allowed] = self._pixels(poses[allowed])
+            if self.prior_px:
+                prior = rest_prior(self.evaluator.body, values[allowed], self.part.dofs)
+                energies[allowed] = np.round(energies[allowed] + self.prior_px * prior, 6)
         return energies
 
     def _pixels(self, poses: np.ndarray) -> np.ndarray:

@@ -5,7 +5,7 @@ limb beyond its first joint may not lie inside (SPEC §5: such candidates are dr
 evaluation).
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -30,6 +30,7 @@ class TorsoVolume:
     joints: np.ndarray
     centres: np.ndarray
     radii: np.ndarray
+    _chains: dict[Part, tuple[np.ndarray, np.ndarray]] = field(default_factory=dict, repr=False)
 
     @classmethod
     def of(cls, body: Body) -> "TorsoVolume":
@@ -48,17 +49,24 @@ class TorsoVolume:
         Asked of the bones' joints, middles and ends; ``transforms`` (N, J, 3, 4) are
         world_from_joint of the candidates.
         """
-        chain = np.unique(self.body.segment_joints[list(part.segments)])
+        chain, tips = self._chain(part)
         carried = transforms[:, chain]
-        tails = np.einsum("njab,jb->nja", carried[..., :3], self.body.tails[chain])
-        tails += carried[..., 3]
+        tails = (carried[..., :3] @ tips)[..., 0] + carried[..., 3]
         joints = carried[:, 1:, :, 3]
         points = np.concatenate([joints, (joints + tails[:, 1:]) / 2, tails], axis=1)
         torso = transforms[:, self.joints]
-        local = np.einsum(
-            "nkab,npka->npkb", torso[..., :3], points[:, :, None] - torso[:, None, :, :, 3]
-        )
-        return (((local - self.centres) / self.radii) ** 2).sum(axis=3).min(axis=(1, 2)) < 1.0
+        # rows times the rotation: the inverse turn
+        local = (points[:, None] - torso[:, :, None, :, 3]) @ torso[..., :3]
+        depths = (((local - self.centres[:, None]) / self.radii[:, None]) ** 2).sum(axis=3)
+        return depths.min(axis=(1, 2)) < 1.0
+
+    def _chain(self, part: Part) -> tuple[np.ndarray, np.ndarray]:
+        """The part's joints, and the ends of their bones as columns (n, 3, 1)."""
+        known = self._chains.get(part)
+        if known is None:
+            chain = np.unique(self.body.segment_joints[list(part.segments)])
+            known = self._chains[part] = chain, self.body.tails[chain][..., None]
+        return known
 
 
 def _box(vertices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

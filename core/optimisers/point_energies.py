@@ -22,16 +22,19 @@ class PointEnergies:
 
     def __init__(self, energies: BatchEnergy, start: np.ndarray):
         self._energies = energies
-        self._known: dict[tuple[float, ...], float] = {}
+        self._known: dict[bytes, float] = {}
         self.best = np.array(start, float)
         self.best_energy = np.inf
 
     def __call__(self, point: np.ndarray) -> float:
         """The energy at the lattice point nearest to ``point``."""
-        nearest = np.round(np.round(point, 6) / _SPACING) * _SPACING
-        key = tuple(nearest)
-        if key not in self._known:
-            self._known[key] = float(self._energies(nearest[None])[0])
-            if self._known[key] < self.best_energy:
-                self.best, self.best_energy = nearest, self._known[key]
-        return self._known[key]
+        # + 0.0: a zero has one form only
+        place = np.rint(point.round(6) / _SPACING) + 0.0
+        key = place.tobytes()
+        energy = self._known.get(key)
+        if energy is None:
+            nearest = place * _SPACING
+            energy = self._known[key] = float(self._energies(nearest[None])[0])
+            if energy < self.best_energy:
+                self.best, self.best_energy = nearest, energy
+        return energy
