@@ -44,6 +44,9 @@ def as_dict(figures: EnergyFigures) -> dict:
         "lod_energy_difference": levels["energy_difference"]["max"],
         "lod_pose_change_mm": levels["pose_change_mm"]["mean"],
         "lod_pose_change_max_mm": levels["pose_change_mm"]["max"],
+        "lod_pose_change_control_mm": levels["full_mesh_from_elsewhere_mm"]["mean"],
+        "lod_best_pose_shift_mm": levels["best_pose_shift_mm"]["mean"],
+        "lod_best_pose_shift_max_mm": levels["best_pose_shift_mm"]["max"],
         "lod": levels,
         "table1": {size: _table1(table) for size, table in figures.table1.items()},
         "table1_2003": {

@@ -153,15 +153,20 @@ def _levels(figures: EnergyFigures) -> str:
         ["masks that differ, of the area", *_shares(found["mask_xor"])],
         ["energies that differ, of the area", *_shares(found["energy_difference"])],
         [
-            f"points of {found['fits']} fits, mm",
-            *(f"{value:.1f}" for value in found["pose_change_mm"].values()),
+            f"points of {found['fits']} fits from the full mesh's best pose, mm",
+            *_lengths(found["best_pose_shift_mm"]),
         ],
+        ["points of fits from a perturbed start, mm", *_lengths(found["pose_change_mm"])],
         [
-            "points of fits with the full mesh from starts 0.1 mrad apart, mm",
-            *(f"{value:.1f}" for value in found["full_mesh_from_elsewhere_mm"].values()),
+            "the same, both with the full mesh, from starts 0.1 mrad apart, mm",
+            *_lengths(found["full_mesh_from_elsewhere_mm"]),
         ],
     ]
     return lined(["coarse against full mesh", "mean", "largest"], rows)
+
+
+def _lengths(spread: dict[str, float]) -> list[str]:
+    return [f"{value:.1f}" for value in spread.values()]
 
 
 def _shares(spread: dict[str, float]) -> list[str]:

@@ -90,6 +90,7 @@ def test_the_coarse_mesh_is_judged_in_three_ways(report):
     assert 0 < report["lod_mask_xor"] < 0.2
     assert 0 <= report["lod_energy_difference"] < 0.05
     assert 0 <= report["lod_pose_change_mm"] <= report["lod_pose_change_max_mm"]
+    assert 0 <= report["lod_best_pose_shift_mm"] <= report["lod_best_pose_shift_max_mm"]
 
 
 def test_table_1_has_every_window_with_and_without_prerendering(report):
