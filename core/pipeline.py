@@ -1,6 +1,5 @@
 """From a take to a motion and its files: the whole story on one screen."""
 
-import os
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import asdict, dataclass, field, replace
@@ -8,8 +7,6 @@ from pathlib import Path
 
 import numpy as np
 
-from .body.body import Body
-from .cameras.camera import Camera
 from .energy.evaluator import Evaluator
 from .errors import MocapError
 from .files import made_folder
@@ -19,8 +16,7 @@ from .initialisation.first_pose import FirstFit, PoseRequest, initialised
 from .initialisation.plausibility import check_first_fit
 from .motion.overlay import Tile, overlay_picture
 from .progress import FrameFigures, Progress
-from .rendering.native import NativeEvaluator
-from .rendering.reference import ReferenceEvaluator
+from .rendering.choice import EVALUATORS, MakeEvaluator, usable
 from .results.fingerprint import Inputs, fit_inputs
 from .results.journal import SET_ASIDE, UNFINISHED, Journal, Start, set_aside
 from .results.writing import (
@@ -46,17 +42,6 @@ Silhouettes = tuple[Silhouette, ...]
 """One frame's, camera by camera."""
 
 
-def native(body: Body, cameras: tuple[Camera, ...]) -> Evaluator:
-    """The native kernel on all processors."""
-    return NativeEvaluator(body, cameras, threads=os.cpu_count() or 1)
-
-
-EVALUATORS: dict[str, Callable[[Body, tuple[Camera, ...]], Evaluator]] = {
-    "native": native,
-    "reference": ReferenceEvaluator,
-}
-
-
 @dataclass(frozen=True)
 class FitRequest:
     """What to fit, and where to write it.
@@ -64,7 +49,7 @@ class FitRequest:
     Attributes:
         out: the folder of the result; made where it is missing.
         search: how to track.
-        evaluator: one of `EVALUATORS`.
+        evaluator: one of `rendering.choice.EVALUATORS`; None for what is best.
         frames: first and last frame, inclusive, that narrow the take's; None leaves an end.
         without: names of cameras to leave out.
         resume: whether to go on with an unfinished fit in ``out``.
@@ -73,7 +58,7 @@ class FitRequest:
 
     out: Path
     search: Search = field(default_factory=Search)
-    evaluator: str = "native"
+    evaluator: str | None = None
     frames: tuple[int | None, int | None] = (None, None)
     without: tuple[str, ...] = ()
     resume: bool = False
@@ -83,6 +68,11 @@ class FitRequest:
     def settings(self) -> dict[str, object]:
         """What decides the result, beside the take."""
         return {**asdict(self.search), "evaluator": self.evaluator, "without": list(self.without)}
+
+    @property
+    def make_evaluator(self) -> MakeEvaluator:
+        """What makes the evaluator of a body and cameras."""
+        return EVALUATORS[self.evaluator or "native"]
 
 
 def fit(take: Take, request: FitRequest, progress: Progress) -> FitResult:
@@ -98,6 +88,7 @@ def fit(take: Take, request: FitRequest, progress: Progress) -> FitResult:
     """
     check_spared(take, request.out)
     views = open_views(take, request.without, request.frames, progress)
+    request = replace(request, evaluator=usable(request.evaluator, views.cameras, progress.note))
     made_folder(request.out)
     inputs = fit_inputs(take, views, request.settings)
     journal = resumed(request.out, inputs, views) if request.resume else None
@@ -173,7 +164,7 @@ def _track(outcome: Outcome, request: FitRequest, progress: Progress) -> None:
     views, journal = outcome.views, outcome.journal
     start = int(journal.start.frames[0])
     setting = SETTINGS[request.search.setting][request.search.fast_motion]
-    make_evaluator = EVALUATORS[request.evaluator]
+    make_evaluator = request.make_evaluator
     tracker = HierarchicalTracker(journal.start.body, views.cameras, make_evaluator, setting)
     first, last = views.frames
     finished = journal.poses()
@@ -224,7 +215,7 @@ def _first_fit(
     height = known_height(take.performer, body)
     wanted = PoseRequest(take.initial_pose.kind, height, take.floor)
     try:
-        first = initialised(body, views.cameras, seen, wanted, EVALUATORS[request.evaluator])
+        first = initialised(body, views.cameras, seen, wanted, request.make_evaluator)
         notes = check_first_fit(first, views.cameras)
     except MocapError as error:
         raise error.about(take.path) from error

@@ -5,7 +5,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from ..motion.export_request import FORMATS, Exporter
-from ..pipeline import EVALUATORS, FitRequest, fit
+from ..pipeline import FitRequest, fit
+from ..rendering.choice import EVALUATORS
 from ..results.exporting import check_formats, export
 from ..results.folder import occupied
 from ..results.writing import FitResult
@@ -29,8 +30,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--tracker", choices=TRACKERS, help="how to search (default: what the take says)"
     )
     parser.add_argument(
-        "--evaluator", choices=tuple(EVALUATORS), default="native",
-        help="what renders and compares silhouettes (default: native)",
+        "--evaluator", choices=tuple(EVALUATORS),
+        help="what renders and compares silhouettes: native (the processor; the default), "
+        "opengl (a graphics processor), or reference (by definition, slow)",
     )  # fmt: skip
     add_cameras_and_frames(parser)
     parser.add_argument(

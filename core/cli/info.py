@@ -15,7 +15,8 @@ from ..checking.words import (
 )
 from ..files import check_replaceable
 from ..motion.export_request import Exporter
-from ..pipeline import EVALUATORS, initial_frames
+from ..pipeline import initial_frames
+from ..rendering.choice import EVALUATORS
 from ..results.exporting import check_formats
 from .arguments import add_take, taken
 from .console import say

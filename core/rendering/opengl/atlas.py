@@ -54,15 +54,23 @@ class DeviceTiles:
         # half a px: the first centre lies at 0.5 in OpenGL
         records[:, 8:10] = tiles.places - low + 0.5 + reach.margin - reach.side / 2
         self.records = new_buffer(thread, self, records)
-        self.pieces, self.count = 0, 0
+        self._pieces = self._cut_up()
         if maps is not None:
-            pieces = self._pieces()
-            self.count = len(pieces)
-            self.pieces = new_buffer(thread, self, pieces)
             self.weights = self._texture(thread, maps)
 
-    def _pieces(self) -> np.ndarray:
-        """(n, 8) int32: x0, y0, x1, y1 in the block, and the view among the tiles."""
+    def pieces(self, reach: np.ndarray) -> np.ndarray:
+        """(n, 8) int32: x0, y0, x1, y1 in the block, and the view among the tiles.
+
+        Args:
+            reach: (k, 4) px of each view's picture; pieces without any of them are left out.
+        """
+        shift = self.tiles.places - self.tiles.windows[:, :2]
+        places = (reach + np.tile(shift, 2))[self._pieces[:, 4]]
+        met = (self._pieces[:, :2] < places[:, 2:]) & (self._pieces[:, 2:4] > places[:, :2])
+        return self._pieces[met.all(axis=1)]
+
+    def _cut_up(self) -> np.ndarray:
+        """(n, 8) all `pieces`."""
         found = []
         for number, (x0, y0, x1, y1) in enumerate(self.tiles.areas.tolist()):
             for y in range(y0, y1, ROWS):
@@ -159,12 +167,15 @@ class Atlas:
                     gl.GL_TRIANGLES, count, gl.GL_UNSIGNED_INT, first, instances
                 )
 
-    def sums(self, tiles: DeviceTiles, candidates: int) -> np.ndarray:
-        """(N, k) int64 sums of weights over what each candidate covers of each tile."""
-        gl, views = self._gl, len(tiles.tiles.views)
+    def sums(self, tiles: DeviceTiles, placement: Placement) -> np.ndarray:
+        """(N, k) int64 sums of weights over what each drawn candidate covers of each tile."""
+        gl, (views, candidates, _) = self._gl, placement.states.shape
+        pieces = tiles.pieces(placement.reach)
+        if not len(pieces):
+            return np.zeros((candidates, views), np.int64)
         groups, across = self._layout(tiles.tiles.size, candidates)
         halves = np.zeros((groups * CANDIDATES, views, 2), np.int32)
-        gl.glBindBufferBase(gl.GL_SHADER_STORAGE_BUFFER, _PIECES, tiles.pieces)
+        self._upload(_PIECES, pieces)
         self._upload(_SUMS, halves)
         for unit, texture in enumerate((self._texture, tiles.weights)):
             gl.glActiveTexture(gl.GL_TEXTURE0 + unit)
@@ -175,7 +186,7 @@ class Atlas:
         gl.glUniform1i(places["blocks"], across)
         gl.glUniform2i(places["block"], *tiles.tiles.size)
         gl.glMemoryBarrier(gl.GL_TEXTURE_FETCH_BARRIER_BIT | gl.GL_FRAMEBUFFER_BARRIER_BIT)
-        gl.glDispatchCompute(tiles.count, groups, 1)
+        gl.glDispatchCompute(len(pieces), groups, 1)
         gl.glMemoryBarrier(gl.GL_BUFFER_UPDATE_BARRIER_BIT)
         gl.glGetBufferSubData(gl.GL_SHADER_STORAGE_BUFFER, 0, halves.nbytes, address(halves))
         wide = halves[:candidates].astype(np.int64)

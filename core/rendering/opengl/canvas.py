@@ -9,8 +9,8 @@ import numpy as np
 from .context import GlThread, no_opengl
 from .meshes import Mesh
 
-_LARGEST_VIEWPORT = 1 << 15
-"""px; 256 times this fits the 24 bits of single precision."""
+_LARGEST_VIEWPORT = 1 << 14
+"""px; 256 times this, and a sign, fit the 24 bits of single precision. All drivers have as much."""
 
 
 @dataclass(frozen=True)

@@ -8,9 +8,8 @@ import numpy as np
 from ...body.body import Body
 from ...cameras.camera import Camera
 from ...energy.evaluator import WeightMaps
-from ...errors import MocapError
-from .canvas import DeviceMesh, drawing_range
-from .context import GlThread, shared_thread
+from .canvas import DeviceMesh, Range, drawing_range
+from .context import GlThread, no_opengl, shared_thread
 from .meshes import segment_mesh
 from .placing import Placement, Placer
 from .tiles import Tiles, clipped_windows
@@ -31,6 +30,26 @@ class MaskedMaps:
     maps: tuple[np.ndarray, ...]
     constants: np.ndarray
     windows: np.ndarray
+
+
+def check_version(thread: GlThread, wanted: tuple[int, int]) -> None:
+    """Raises a MocapError unless the context is as new as ``wanted``."""
+    if thread.version < wanted:
+        have, need = (".".join(map(str, version)) for version in (thread.version, wanted))
+        raise no_opengl(f"{thread.renderer} has version {have}, older than {need}")
+
+
+def check_sizes(thread: GlThread, cameras: Sequence[Camera]) -> Range:
+    """What can be drawn, which the cameras' pictures are part of.
+
+    Raises:
+        MocapError: a picture is too large.
+    """
+    reach = thread.call(drawing_range, thread.gl)
+    largest = max(max(camera.size) for camera in cameras)
+    if largest > reach.largest:
+        raise no_opengl(f"it draws pictures of at most {reach.largest} px, one has {largest}")
+    return reach
 
 
 class OpenGLBase:
@@ -61,19 +80,9 @@ class OpenGLBase:
             raise ValueError("expected at least one camera, all of them pinhole")
         self.body, self.cameras, self.level = body, tuple(cameras), level
         self.thread = thread or shared_thread()
-        if self.thread.version < self.version:
-            have, need = (".".join(map(str, v)) for v in (self.thread.version, self.version))
-            raise MocapError(
-                f"OpenGL {have} ({self.thread.renderer}) is older than {need}",
-                "choose another evaluator",
-            )
+        check_version(self.thread, self.version)
+        self._range = check_sizes(self.thread, cameras)
         self._sizes = np.array([camera.size for camera in cameras], np.int64)
-        self._range = self.thread.call(drawing_range, self.thread.gl)
-        if self._sizes.max() > self._range.largest:
-            raise MocapError(
-                f"OpenGL draws pictures of at most {self._range.largest} px here, "
-                f"got {self._sizes.max()}", "choose another evaluator",
-            )  # fmt: skip
         self._placer = Placer(body, cameras, level)
         self._meshes: dict[tuple[int, ...], DeviceMesh] = {}
 

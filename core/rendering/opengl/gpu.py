@@ -12,13 +12,17 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ...cameras.camera import Camera
 from ...energy.evaluator import WeightMaps
 from .atlas import Atlas, DeviceTiles
-from .common import MaskedMaps, OpenGLBase
+from .common import MaskedMaps, OpenGLBase, check_sizes, check_version
+from .context import shared_thread
 from .gpu_shaders import CANDIDATES
 from .placing import Placement
 from .tiles import clipped_windows, packed
 
+VERSION = (4, 3)
+"""Of OpenGL, at least: the first with compute shaders."""
 _MOST_CANDIDATES = 4096
 
 
@@ -40,6 +44,19 @@ class GpuWeights:
         return self.masked.constants
 
 
+def check_usable(cameras: Sequence[Camera]) -> str:
+    """The name of what draws these cameras' pictures.
+
+    Raises:
+        MocapError: OpenGL cannot be used, or not for pictures of their size.
+    """
+    thread = shared_thread()
+    check_version(thread, VERSION)
+    check_sizes(thread, cameras)
+    thread.kept(Atlas)
+    return thread.renderer
+
+
 class OpenGLEvaluator(OpenGLBase):
     """Energies and silhouettes by a graphics processor; see `energy.evaluator.Evaluator`.
 
@@ -47,7 +64,7 @@ class OpenGLEvaluator(OpenGLBase):
     nothing but its arguments. Arguments and faults are those of `OpenGLBase`.
     """
 
-    version = (4, 3)
+    version = VERSION
 
     def __init__(self, *arguments, **keywords):
         super().__init__(*arguments, **keywords)
@@ -101,7 +118,7 @@ class OpenGLEvaluator(OpenGLBase):
         self, tiles: DeviceTiles, placement: Placement, segments: tuple[int, ...]
     ) -> np.ndarray:
         self._atlas.draw(self._mesh(segments), tiles, placement)
-        return self._atlas.sums(tiles, placement.states.shape[1])
+        return self._atlas.sums(tiles, placement)
 
     def _draw_silhouettes(
         self, pose: np.ndarray, segments: tuple[int, ...]

@@ -28,10 +28,13 @@ class Placement:
     Attributes:
         rows: (V, 3, N, S, 4) float32, rows of the matrices homogeneous px from joint.
         states: (V, N, S) uint32, `HIDDEN`, `WHOLE` or `CUT`.
+        reach: (V, 4) int64 px x0, y0, x1, y1, what of each window they can cover, all together;
+            empty where they cover nothing.
     """
 
     rows: np.ndarray
     states: np.ndarray
+    reach: np.ndarray
 
 
 def window_planes(projection: np.ndarray, window: np.ndarray, margin: float) -> np.ndarray:
@@ -47,6 +50,52 @@ def window_planes(projection: np.ndarray, window: np.ndarray, margin: float) -> 
         planes += [y - (y0 - reach) * depth, (y1 + reach) * depth - y]
     stacked = np.stack(planes)
     return stacked / np.linalg.norm(stacked[:, :3], axis=1, keepdims=True)
+
+
+def _distances(centres: np.ndarray, planes: np.ndarray) -> np.ndarray:
+    """(V, p, N, S) values of planes (V, p, 4) at points (V or 1, 3, N, S)."""
+    views, _, count, segments = centres.shape
+    flat = planes[:, :, :3] @ centres.reshape(views, 3, -1) + planes[:, :, 3:]
+    return flat.reshape(*planes.shape[:2], count, segments)
+
+
+def _states(centres: np.ndarray, radii: np.ndarray, planes: np.ndarray) -> np.ndarray:
+    """(V, N, S) states of spheres with centres (V or 1, 3, N, S), by planes (V, 9, 4)."""
+    distances = _distances(centres, planes)
+    radii = radii * (1 + _SLACK) + _SLACK
+    states = np.where((distances[:, :5] > radii).all(axis=1), WHOLE, CUT)
+    unseen = (distances[:, [0, 5, 6, 7, 8]] < -radii).any(axis=1)
+    return np.where(unseen, HIDDEN, states).astype(np.uint32)
+
+
+def _reach(
+    centres: np.ndarray,
+    radii: np.ndarray,
+    projections: np.ndarray,
+    windows: np.ndarray,
+    states: np.ndarray,
+) -> np.ndarray:
+    """(V, 4) px that hold the pictures of all spheres but hidden ones, clipped to the windows.
+
+    A sphere's homogeneous px lie in intervals, of which the quotient is taken; counted from the
+    window's middle, so that the quotients are small and their intervals narrow.
+    """
+    middles = (windows[:, :2] + windows[:, 2:]) / 2
+    planes = projections.copy()
+    planes[:, :2] -= middles[:, :, None] * planes[:, 2:]
+    h = _distances(centres, planes)
+    spread = np.linalg.norm(planes[:, :, :3], axis=2)[:, :, None, None] * radii
+    least = h[:, 2:] - spread[:, 2:]
+    near, far = np.maximum(least, NEAR), h[:, 2:] + spread[:, 2:]
+    low, high = h[:, :2] - spread[:, :2], h[:, :2] + spread[:, :2]
+    low = np.where(low < 0, low / near, low / far)
+    high = np.where(high > 0, high / near, high / far)
+    hidden = (states == HIDDEN)[:, None]
+    low = np.where(hidden, np.inf, low).min(axis=(2, 3), initial=np.inf) + middles
+    high = np.where(hidden, -np.inf, high).max(axis=(2, 3), initial=-np.inf) + middles
+    low = np.clip(np.floor(low) - 1, windows[:, :2], windows[:, 2:])
+    high = np.clip(np.ceil(high) + 2, low, windows[:, 2:])
+    return np.concatenate([low, high], axis=1).astype(np.int64)
 
 
 class Placer:
@@ -96,25 +145,15 @@ class Placer:
         projections = self.projections[views]
         rows = (projections[:, :, :3] @ columns).reshape(len(views), 3, count, len(chosen), 4)
         rows[..., 3] += projections[:, :, 3, None, None]
+        spheres = self.spheres[chosen]
+        local = np.append(spheres[:, :3], np.ones((len(chosen), 1)), axis=1)
+        centres = np.moveaxis((world * local[:, None]).sum(axis=-1), 3, 1)
         planes = np.stack(
             [window_planes(p, w, margin) for p, w in zip(projections, windows, strict=True)]
         )
-        return Placement(rows.astype(np.float32), self._states(world, self.spheres[chosen], planes))
-
-    @staticmethod
-    def _states(world: np.ndarray, spheres: np.ndarray, planes: np.ndarray) -> np.ndarray:
-        """(V, N, S) states from transforms (V or 1, N, S, 3, 4) and planes (V, 9, 4)."""
-        local = np.append(spheres[:, :3], np.ones((len(spheres), 1)), axis=1)
-        centres = (world * local[:, None]).sum(axis=-1)
-        views, count, segments, _ = centres.shape
-        flat = np.moveaxis(centres, 3, 1).reshape(views, 3, -1)
-        distances = (planes[:, :, :3] @ flat + planes[:, :, 3:]).reshape(
-            len(planes), 9, count, segments
-        )
-        radii = spheres[:, 3] * (1 + _SLACK) + _SLACK
-        states = np.where((distances[:, :5] > radii).all(axis=1), WHOLE, CUT)
-        unseen = (distances[:, [0, 5, 6, 7, 8]] < -radii).any(axis=1)
-        return np.where(unseen, HIDDEN, states).astype(np.uint32)
+        states = _states(centres, spheres[:, 3], planes)
+        reach = _reach(centres, spheres[:, 3], projections, windows, states)
+        return Placement(rows.astype(np.float32), states, reach)
 
     def bounds(self, transforms: np.ndarray, segments: Sequence[int]) -> np.ndarray:
         """(N, V, 4) int32: x0, y0, x1, y1 (exclusive), px that the segments can cover, unclipped.

@@ -1,0 +1,54 @@
+"""Which evaluator does the work: by name, or by itself.
+
+By itself it is the native kernel: on a processor nothing else comes near to it. OpenGL is for
+machines with a graphics processor, and only where it was asked for.
+"""
+
+import os
+from collections.abc import Callable, Sequence
+
+from ..body.body import Body
+from ..cameras.camera import Camera
+from ..energy.evaluator import Evaluator
+from ..errors import MocapError
+from .native import NativeEvaluator
+from .reference import ReferenceEvaluator
+
+MakeEvaluator = Callable[[Body, tuple[Camera, ...]], Evaluator]
+
+
+def native(body: Body, cameras: tuple[Camera, ...]) -> Evaluator:
+    """The native kernel on all processors."""
+    return NativeEvaluator(body, cameras, threads=os.cpu_count() or 1)
+
+
+def opengl(body: Body, cameras: tuple[Camera, ...]) -> Evaluator:
+    """OpenGL with many candidates at once; PyOpenGL is imported by the first call."""
+    from .opengl.gpu import OpenGLEvaluator
+
+    return OpenGLEvaluator(body, cameras)
+
+
+EVALUATORS: dict[str, MakeEvaluator] = {
+    "native": native,
+    "opengl": opengl,
+    "reference": ReferenceEvaluator,
+}
+
+
+def usable(name: str | None, cameras: Sequence[Camera], note: Callable[[str], None]) -> str:
+    """The evaluator to take for ``name``, one of `EVALUATORS`, or None for what is best.
+
+    Where OpenGL was asked for and cannot be used, ``note`` is told why, and it is the native one.
+    """
+    if name != "opengl":
+        return name or "native"
+    from .opengl.gpu import check_usable
+
+    try:
+        renderer = check_usable(cameras)
+    except MocapError as error:
+        note(f"{error.problem}; the native evaluator goes on")
+        return "native"
+    note(f"OpenGL draws on {renderer}")
+    return name
