@@ -3,13 +3,15 @@
 
 def register():
     """Registers everything the add-on gives Blender."""
-    from . import cli
+    from . import cli, preferences
 
+    preferences.register()
     cli.register()
 
 
 def unregister():
     """Takes back what `register` gave, in reverse order."""
-    from . import cli
+    from . import cli, preferences
 
     cli.unregister()
+    preferences.unregister()

@@ -2,6 +2,8 @@
 
 import bpy
 
+from .preferences import with_preferences
+
 NAME = "silhouette_mocap"
 
 _handles = []
@@ -23,4 +25,4 @@ def _run(arguments: list[str]) -> int:
     from ..core.cli import main
     from .export import export_take
 
-    return main(arguments, export_take)
+    return main(with_preferences(arguments), export_take)
