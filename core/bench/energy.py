@@ -4,7 +4,6 @@ Whatever flushes subnormal numbers once it is loaded, the prototypes, comes last
 """
 
 import tempfile
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -16,10 +15,20 @@ from .cameras import CameraCosts, camera_costs
 from .levels import LevelCheck, level_check
 from .machine import machine
 from .prototypes import FILES, Prototypes, are_in
-from .rows import EXACT, LOD, PAPER_GL, hull_rows, native_rows, opengl_renderer, opengl_rows
+from .rows import (
+    EXACT,
+    LOD,
+    PAPER_GL,
+    coarse_level,
+    full_level,
+    hull_rows,
+    native_rows,
+    opengl_renderer,
+    opengl_rows,
+)
 from .sequences import SEQUENCES, sequence
 from .stage import PAPER_SIZE, studio
-from .table1 import CELLS, WAYS, Measured, Scene, table1
+from .table1 import CELLS, WAYS, Measured, Scene, Teller, table1, triangles
 from .table2 import SequenceFits, table2
 from .turns import Rates, Turns
 
@@ -42,7 +51,7 @@ class EnergySettings:
     turns: Turns = field(default_factory=Turns)
     sizes: tuple[tuple[int, int], ...] = (PAPER_SIZE, (640, 480), (1920, 1080))
     camera_counts: tuple[int, ...] = (2, 4, 6, 8, 10, 12, 14, 16)
-    frames: int = 45
+    frames: int = 40
     fits: int = 50
     prototypes: Path | None = None
 
@@ -105,9 +114,7 @@ def energy_figures(settings: EnergySettings, progress: Progress) -> EnergyFigure
             notes.append(text)
             progress.note(text)
 
-    def advance() -> None:
-        progress.advance(None)
-
+    tell = Teller(note, lambda: progress.advance(None))
     body = template("sixteen_segment")
     motion = sequence(body, "A", _POSE_FRAME + 1)
     scene = Scene(body, motion[_POSE_FRAME], motion[_SEEN_FRAME])
@@ -116,12 +123,12 @@ def energy_figures(settings: EnergySettings, progress: Progress) -> EnergyFigure
     progress.begin("bench", settings.steps)
     tables = {}
     for size in settings.sizes:
-        tables[named(size)] = table1(scene, size, rows, settings.turns, advance)
+        tables[named(size)] = table1(scene, size, rows, settings.turns, tell)
     costs = camera_costs(scene, settings.camera_counts, plain, settings.turns)
-    advance()
+    tell.advance()
     cameras = studio()
-    levels = level_check(body, cameras, settings.fits, advance)
-    fits = {name: table2(body, cameras, name, settings.frames, advance) for name in SEQUENCES}
+    levels = level_check(body, cameras, settings.fits, tell.advance)
+    fits = {name: table2(body, cameras, name, settings.frames, tell.advance) for name in SEQUENCES}
     return EnergyFigures(
         machine=machine(opengl_renderer()),
         titles={row.name: row.title for row in rows},
@@ -129,8 +136,8 @@ def energy_figures(settings: EnergySettings, progress: Progress) -> EnergyFigure
         cameras=costs,
         levels=levels,
         table2=fits,
-        prototypes=_prototype_figures(settings, note, advance),
-        triangles=(len(body.surfaces[-1].triangles), len(body.surfaces[0].triangles)),
+        prototypes=_prototype_figures(settings, tell),
+        triangles=(triangles(body, full_level), triangles(body, coarse_level)),
         notes=tuple(notes),
     )
 
@@ -140,12 +147,10 @@ def named(size: tuple[int, int]) -> str:
     return f"{size[0]}x{size[1]}"
 
 
-def _prototype_figures(
-    settings: EnergySettings, note: Callable[[str], None], advance: Callable[[], None]
-) -> dict[str, dict[str, Rates]]:
+def _prototype_figures(settings: EnergySettings, tell: Teller) -> dict[str, dict[str, Rates]]:
     if not are_in(settings.prototypes):
         where = "" if settings.prototypes is None else f" in {settings.prototypes}"
-        note(f"no rows for the prototypes: {', '.join(FILES)} are not at hand{where}")
+        tell.note(f"no rows for the prototypes: {', '.join(FILES)} are not at hand{where}")
         return {}
     assert settings.prototypes is not None
     found: dict[str, dict[str, Rates]] = {}
@@ -153,10 +158,10 @@ def _prototype_figures(
         try:
             prototypes = Prototypes(settings.prototypes, Path(scratch))
         except MocapError as error:
-            note(f"no rows for the prototypes: {error}")
+            tell.note(f"no rows for the prototypes: {error}")
             return {}
         for size, part in settings.comparisons:
-            rates = prototype.prototype_rates(prototypes, size, part, settings.turns, note)
+            rates = prototype.prototype_rates(prototypes, size, part, settings.turns, tell.note)
             found.setdefault(named(size), {})[part] = rates
-            advance()
+            tell.advance()
     return found

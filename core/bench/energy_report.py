@@ -20,34 +20,12 @@ Ratios = dict[str, dict[str, float | None]]
 
 def as_dict(figures: EnergyFigures) -> dict:
     """All figures for JSON; ratios are medians over the turns, None where a side is missing."""
-    first = next(iter(figures.table1.values()))
-    per_size = {size: weighted_ratios(table) for size, table in figures.table1.items()}
-    kern = {size: ratios_to_kern_c(parts) for size, parts in figures.prototypes.items()}
-    gl_eval = {size: ratios_to_gl_eval(parts) for size, parts in figures.prototypes.items()}
-    levels = figures.levels.as_dict()
     return {
         "machine": figures.machine,
         "notes": figures.notes,
         "triangles": dict(zip(LEVELS, figures.triangles, strict=True)),
-        "ratio_to_paper_gl": ratios_in(first, PAPER_GL),
-        "ratio_to_kern_c": next(iter(kern.values()), _nothing()),
-        "ratio_to_gl_eval": next(iter(gl_eval.values()), _nothing()),
-        "ratio_to_paper_gl_by_size": {
-            size: ratios_in(table, PAPER_GL) for size, table in figures.table1.items()
-        },
-        "ratio_to_kern_c_by_size": kern,
-        "ratio_to_gl_eval_by_size": gl_eval,
-        "two_threads": two_thread_ratios(first),
-        "weighted_ratio": {size: ratios["lod"]["whole"] for size, ratios in per_size.items()},
-        "weighted_ratio_by_part": per_size,
-        "lod_mask_xor": levels["mask_xor"]["max"],
-        "lod_energy_difference": levels["energy_difference"]["max"],
-        "lod_pose_change_mm": levels["pose_change_mm"]["mean"],
-        "lod_pose_change_max_mm": levels["pose_change_mm"]["max"],
-        "lod_pose_change_control_mm": levels["full_mesh_from_elsewhere_mm"]["mean"],
-        "lod_best_pose_shift_mm": levels["best_pose_shift_mm"]["mean"],
-        "lod_best_pose_shift_max_mm": levels["best_pose_shift_mm"]["max"],
-        "lod": levels,
+        **_ratios(figures),
+        **_level_figures(figures),
         "table1": {size: _table1(table) for size, table in figures.table1.items()},
         "table1_2003": {
             cell: dict(zip(WAYS, rates, strict=True)) for cell, rates in PAPER_RATES.items()
@@ -69,6 +47,42 @@ def as_dict(figures: EnergyFigures) -> dict:
             size: {part: _rates(rates) for part, rates in parts.items()}
             for size, parts in figures.prototypes.items()
         },
+    }
+
+
+def _ratios(figures: EnergyFigures) -> dict:
+    """At the paper's resolution, and by size where there are several."""
+    tables, comparisons = figures.table1.items(), figures.prototypes.items()
+    paper_gl = {size: ratios_in(table, PAPER_GL) for size, table in tables}
+    threads = {size: two_thread_ratios(table) for size, table in tables}
+    weighted = {size: weighted_ratios(table) for size, table in tables}
+    kern_c = {size: ratios_to_kern_c(parts) for size, parts in comparisons}
+    gl_eval = {size: ratios_to_gl_eval(parts) for size, parts in comparisons}
+    return {
+        "ratio_to_paper_gl": next(iter(paper_gl.values())),
+        "ratio_to_kern_c": next(iter(kern_c.values()), _nothing()),
+        "ratio_to_gl_eval": next(iter(gl_eval.values()), _nothing()),
+        "two_threads": next(iter(threads.values())),
+        "weighted_ratio": {size: ratios["lod"]["whole"] for size, ratios in weighted.items()},
+        "ratio_to_paper_gl_by_size": paper_gl,
+        "ratio_to_kern_c_by_size": kern_c,
+        "ratio_to_gl_eval_by_size": gl_eval,
+        "two_threads_by_size": threads,
+        "weighted_ratio_by_part": weighted,
+    }
+
+
+def _level_figures(figures: EnergyFigures) -> dict:
+    levels = figures.levels.as_dict()
+    return {
+        "lod_mask_xor": levels["mask_xor"]["max"],
+        "lod_energy_difference": levels["energy_difference"]["max"],
+        "lod_pose_change_mm": levels["pose_change_mm"]["mean"],
+        "lod_pose_change_max_mm": levels["pose_change_mm"]["max"],
+        "lod_pose_change_control_mm": levels["full_mesh_from_elsewhere_mm"]["mean"],
+        "lod_best_pose_shift_mm": levels["best_pose_shift_mm"]["mean"],
+        "lod_best_pose_shift_max_mm": levels["best_pose_shift_mm"]["max"],
+        "lod": levels,
     }
 
 

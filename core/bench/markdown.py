@@ -63,7 +63,7 @@ def rates(table: Measured, figures: EnergyFigures) -> str:
     rows = [
         [
             figures.titles[name],
-            *(_count(medians[cell.name, way][name]) for cell in CELLS for way in WAYS),
+            *(_count(medians[cell.name, way].get(name)) for cell in CELLS for way in WAYS),
         ]
         for name in names
     ]

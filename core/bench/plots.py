@@ -105,11 +105,11 @@ def _panel(cost: CameraCosts, title: str, left: float, wide: float, colour: str)
     for mark in y.marks:
         (_, row), *_ = place([0], [mark])
         shapes.append(_line(left, row, left + wide, row))
-        shapes.append(_text(y.label(mark), left - 6, row + 4, "end", "soft"))
+        shapes.append(_text(f"{mark:,.0f}", left - 6, row + 4, "end", "soft"))
     for count in cost.counts.tolist():
         (column, row), *_ = place([count], [0])
         shapes.append(_text(str(count), column, row + 16, "middle", "soft"))
-    ends = np.array([0, cost.counts.max()])
+    ends = cost.counts[[0, -1]]
     points = place(ends, 1e6 * (cost.fixed + cost.per_camera * ends))
     path = " ".join(f"{a:.1f},{b:.1f}" for a, b in points)
     shapes.append(element("polyline", points=path, fill="none", stroke=colour, stroke_width=1.5))
@@ -128,7 +128,7 @@ def _speed(figures: EnergyFigures) -> Bars:
         }
     }
     for name in medians["whole"]:
-        groups[figures.titles[name]] = {part: medians[part][name] for part in PARTS}
+        groups[figures.titles[name]] = {part: medians[part].get(name) for part in PARTS}
     parts = next(iter(figures.prototypes.values()), {})
     for name in (prototype.GL_EVAL, prototype.KERN_EXACT, *prototype.KERN_COARSE):
         found = {part: rates.medians.get(name) for part, rates in parts.items()}

@@ -14,6 +14,7 @@ import numpy as np
 
 from ..body.body import Body
 from ..cameras.camera import Camera
+from ..errors import MocapError
 from ..rendering.native import NativeEvaluator
 from .rows import Row, full_level, variant
 from .stage import PART_SPREAD, WHOLE_SPREAD, Stage, candidates_about, filmed, part_named, studio
@@ -26,6 +27,19 @@ PAPER_RATES = {
     "hand": (144.9, 855.4),
 }
 """XOR and XORPR on a GeForce3 and a 1.8 GHz Xeon; the paper's smallest window holds the head."""
+
+
+@dataclass(frozen=True, eq=False)
+class Teller:
+    """What the benchmark says meanwhile.
+
+    Attributes:
+        note: a sentence on what is left out.
+        advance: one step is done.
+    """
+
+    note: Callable[[str], None]
+    advance: Callable[[], None]
 
 
 @dataclass(frozen=True)
@@ -83,30 +97,38 @@ def table1(
     size: tuple[int, int],
     rows: Sequence[Row],
     turns: Turns,
-    advance: Callable[[], None],
+    tell: Teller,
 ) -> Measured:
-    """All cells at one resolution (width, height); ``advance`` is called after each."""
+    """All cells at one resolution (width, height); rows that fail there are left out."""
     found: Measured = {}
     for scale in dict.fromkeys(cell.scale for cell in CELLS):
         stage = scene.stage(studio((int(size[0] * scale), int(size[1] * scale))))
-        evaluators = {row.make: row.make(stage.body, stage.cameras) for row in rows}
+        evaluators = _evaluators(stage, rows, tell)
         for cell in CELLS:
             if cell.scale != scale:
                 continue
             for way in WAYS:
-                found[cell.name, way] = _rates(stage, cell, way, rows, evaluators, turns)
-                advance()
+                found[cell.name, way] = _rates(stage, cell, way, evaluators, turns)
+                tell.advance()
     return {(cell.name, way): found[cell.name, way] for cell in CELLS for way in WAYS}
 
 
-def _rates(
-    stage: Stage,
-    cell: Cell,
-    way: str,
-    rows: Sequence[Row],
-    evaluators: dict[Any, Any],
-    turns: Turns,
-) -> Rates:
+def _evaluators(stage: Stage, rows: Sequence[Row], tell: Teller) -> dict[Row, Any]:
+    """What each row draws with; rows that are made alike share it."""
+    made: dict[Any, Any] = {}
+    for row in rows:
+        if row.make in made:
+            continue
+        try:
+            made[row.make] = row.make(stage.body, stage.cameras)
+            variant(row, made[row.make], stage, stage.everything, None).energies(stage.pose[None])
+        except MocapError as error:
+            made[row.make] = None
+            tell.note(f"{row.title} is left out at {stage.cameras[0].size}: {error}")
+    return {row: made[row.make] for row in rows if made[row.make] is not None}
+
+
+def _rates(stage: Stage, cell: Cell, way: str, evaluators: dict[Row, Any], turns: Turns) -> Rates:
     part = None if cell.part is None else part_named(stage.body, cell.part)
     moved = range(len(stage.body.dofs)) if part is None else part.dofs
     spread = WHOLE_SPREAD if part is None else PART_SPREAD
@@ -115,10 +137,10 @@ def _rates(
         windows = stage.windows(part, cell.side)
     prerendered = part is not None and way == "prerendered"
     drawn = part.segments if part is not None and prerendered else stage.everything
-    variants = [variant(row, evaluators[row.make], stage, drawn, windows) for row in rows]
+    variants = [variant(row, made, stage, drawn, windows) for row, made in evaluators.items()]
     return measured(variants, candidates_about(stage.pose, moved, spread, turns.poses), turns)
 
 
-def triangles(body: Body) -> int:
-    """Of the finest surface."""
-    return len(body.surfaces[full_level(body)].triangles)
+def triangles(body: Body, level: Callable[[Body], int] = full_level) -> int:
+    """How many the surface has that ``level`` chooses."""
+    return len(body.surfaces[level(body)].triangles)

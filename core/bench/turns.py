@@ -46,7 +46,7 @@ class Turns:
         largest_batch: candidates in one call at most.
     """
 
-    count: int = 7
+    count: int = 5
     seconds: float = 0.12
     poses: int = 16384
     largest_batch: int = 512
