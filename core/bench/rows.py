@@ -113,7 +113,7 @@ def variant(
     def energies(poses: np.ndarray) -> np.ndarray:
         return evaluator.energies(weights, poses, segments).sum(axis=1)
 
-    return Variant(row.name, energies)
+    return Variant(row.name, energies, comparable=not row.weighted)
 
 
 def _native(level: Callable[[Body], int], threads: int = 1) -> Callable:

@@ -27,12 +27,14 @@ class Variant:
         energies: a batch of candidates, as ``converted`` made them, to its (n,) energies in px.
         converted: poses (n, D) in the form that ``energies`` takes; not timed.
         ready: called before each turn; not timed.
+        comparable: whether its energies mean the same as the first variant's.
     """
 
     name: str
     energies: Callable[[np.ndarray], np.ndarray]
     converted: Callable[[np.ndarray], np.ndarray] = np.ascontiguousarray
     ready: Callable[[], object] = tuple
+    comparable: bool = True
 
 
 @dataclass(frozen=True)
@@ -49,7 +51,7 @@ class Turns:
     count: int = 5
     seconds: float = 0.12
     poses: int = 16384
-    largest_batch: int = 512
+    largest_batch: int = 1024
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,18 +62,24 @@ class Rates:
         names: N variants.
         per_turn: (turns, N) evaluations per second.
         batches: N candidates in one call.
-        differences: N largest differences in px from the first variant's energies.
+        differences: N largest differences in px from the first variant's energies; None for those
+            that are not comparable.
     """
 
     names: tuple[str, ...]
     per_turn: np.ndarray
     batches: tuple[int, ...]
-    differences: tuple[int, ...]
+    differences: tuple[int | None, ...]
 
     @property
     def medians(self) -> dict[str, float]:
         """Evaluations per second by name."""
         return dict(zip(self.names, np.median(self.per_turn, axis=0).tolist(), strict=True))
+
+    @property
+    def fastest(self) -> dict[str, float]:
+        """Evaluations per second of each variant's best turn, the one least disturbed, by name."""
+        return dict(zip(self.names, self.per_turn.max(axis=0).tolist(), strict=True))
 
     def ratio(self, name: str, base: str) -> float | None:
         """How many times as fast ``name`` is as ``base``; None where one was not measured."""
@@ -109,7 +117,10 @@ def measured(
         poses = candidates(turn + 1)
         for k in order(turn, len(variants)):
             rates[turn, k] = _rate(variants[k], poses, batches[k], turns.seconds)
-    differences = tuple(int(np.abs(e - energies[0]).max()) for e in energies)
+    differences = tuple(
+        int(np.abs(e - energies[0]).max()) if v.comparable else None
+        for e, v in zip(energies, variants, strict=True)
+    )
     return Rates(tuple(v.name for v in variants), rates, tuple(batches), differences)
 
 

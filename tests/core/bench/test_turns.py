@@ -16,6 +16,7 @@ def test_medians_and_ratios_are_those_of_the_turns():
     per_turn = np.array([[10.0, 40.0], [20.0, 20.0], [60.0, 90.0]])
     rates = Rates(("slow", "quick"), per_turn, (1, 1), (0, 0))
     assert rates.medians == {"slow": 20.0, "quick": 40.0}
+    assert rates.fastest == {"slow": 60.0, "quick": 90.0}
     # of 4, 1 and 1.5 times; the medians' own ratio would be 2
     assert rates.ratio("quick", "slow") == 1.5
     assert rates.ratio("quick", "absent") is None
@@ -91,9 +92,10 @@ def test_what_is_converted_and_readied_is_not_timed():
 
 
 def test_differences_from_the_first_variant_are_told():
-    variants = [Variant("a", sums), Variant("b", lambda poses: sums(poses) + 3)]
+    other = lambda poses: sums(poses) + 3  # noqa: E731
+    variants = [Variant("a", sums), Variant("b", other), Variant("c", other, comparable=False)]
     rates = measured(variants, candidates_about(np.zeros(4), [0], 1.0, 64), TURNS)
-    assert rates.differences == (0, 3)
+    assert rates.differences == (0, 3, None)
 
 
 @pytest.mark.parametrize("dofs", [[0], range(6)])
