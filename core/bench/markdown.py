@@ -40,7 +40,12 @@ def whole_report(figures: EnergyFigures) -> str:
         ]
     for size, of_parts in figures.prototypes.items():
         parts += [f"## Beside the prototypes at {size}", prototype_rates(of_parts, figures)]
-    parts += ["## Ratios", ratio_table(figures), "## Number of cameras", _cameras(figures)]
+    parts += [
+        "## Ratios",
+        ratio_table(figures, with_prototypes=True),
+        "## Number of cameras",
+        _cameras(figures),
+    ]
     parts += ["## Coarse mesh", _levels(figures), "## Table 2", fits(figures)]
     parts += [f"![{title}]({name}.svg)" for name, title in PLOTS.items()]
     parts += [f"- {note}" for note in figures.notes]
@@ -48,10 +53,14 @@ def whole_report(figures: EnergyFigures) -> str:
 
 
 def readme_section(figures: EnergyFigures, folder: str) -> str:
-    """The README's part; the plots lie in ``folder``, relative to it."""
+    """The README's part; the plots lie in ``folder``, relative to it.
+
+    Prototypes are left out: nobody who reads it has them.
+    """
     first = next(iter(figures.table1.values()))
     pictures = [f"![{title}]({folder}/{name}.svg)" for name, title in PLOTS.items()]
-    parts = [_about(figures), rates(first, figures), ratio_table(figures), fits(figures), *pictures]
+    parts = [_about(figures), rates(first, figures), ratio_table(figures, with_prototypes=False)]
+    parts += [fits(figures), *pictures]
     return "\n\n".join(parts) + "\n"
 
 
@@ -82,16 +91,19 @@ def prototype_rates(parts: dict, figures: EnergyFigures) -> str:
     return lined(["", *parts], rows)
 
 
-def ratio_table(figures: EnergyFigures) -> str:
+def ratio_table(figures: EnergyFigures, with_prototypes: bool) -> str:
     """How many times as fast our rows are."""
+    kinds = {
+        "to OpenGL as in the paper": lambda table: ratios_in(table, PAPER_GL),
+        "two threads to one": two_thread_ratios,
+        "any weights to ±1": weighted_ratios,
+    }
     rows = []
-    for size, table in figures.table1.items():
-        rows += _ratio_rows(f"to OpenGL as in the paper, {size}", ratios_in(table, PAPER_GL))
-    for size, parts in figures.prototypes.items():
+    for what, ratios in kinds.items():
+        for size, table in figures.table1.items():
+            rows += _ratio_rows(f"{what}, {size}", ratios(table))
+    for size, parts in figures.prototypes.items() if with_prototypes else ():
         rows += _ratio_rows(f"to prototype kern.c, {size}", ratios_to_kern_c(parts))
-    for size, table in figures.table1.items():
-        rows += _ratio_rows(f"two threads to one, {size}", two_thread_ratios(table))
-        rows += _ratio_rows(f"any weights to ±1, {size}", weighted_ratios(table))
     return lined(["", "", "whole", "limb", "hand"], rows)
 
 

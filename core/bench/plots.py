@@ -8,7 +8,6 @@ import numpy as np
 
 from ..pages.axis import Axis, value_axis
 from ..pages.markup import Html, element
-from . import against_prototypes as prototype
 from .cameras import CameraCosts
 from .energy import EnergyFigures
 from .energy_report import PARTS, PRERENDERED
@@ -129,11 +128,6 @@ def _speed(figures: EnergyFigures) -> Bars:
     }
     for name in medians["whole"]:
         groups[figures.titles[name]] = {part: medians[part].get(name) for part in PARTS}
-    parts = next(iter(figures.prototypes.values()), {})
-    for name in (prototype.GL_EVAL, prototype.KERN_EXACT, *prototype.KERN_COARSE):
-        found = {part: rates.medians.get(name) for part, rates in parts.items()}
-        if any(found.values()):
-            groups[prototype.title(name)] = found
     return Bars(PLOTS["speed"], "evaluations/s, all eight cameras", groups)
 
 
