@@ -11,7 +11,7 @@ import sys
 import weakref
 from collections import deque
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
 from functools import cache
 from typing import Any, ParamSpec, Protocol, TypeVar, cast
 
@@ -118,7 +118,11 @@ class GlThread:
         Raises:
             MocapError: OpenGL refuses something, such as more memory.
         """
-        return self._pool.submit(self._run, function, *args, **kwargs).result()
+        return self.submit(function, *args, **kwargs).result()
+
+    def submit(self, function: Callable[P, R], *args: P.args, **kwargs: P.kwargs) -> Future[R]:
+        """The same, but the caller goes on at once."""
+        return self._pool.submit(self._run, function, *args, **kwargs)
 
     def forget_with(self, owner: object, deleter: str, name: int) -> None:
         """Deletes the object ``name`` by ``gl.deleter`` some time after ``owner`` is gone."""

@@ -8,6 +8,7 @@ energy/evaluator.py).
 """
 
 from collections.abc import Sequence
+from concurrent.futures import Future
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -24,6 +25,8 @@ from .tiles import clipped_windows, packed
 VERSION = (4, 3)
 """Of OpenGL, at least: the first with compute shaders."""
 _MOST_CANDIDATES = 4096
+_MOST_MATRICES = 1 << 16
+"""In a batch; 3 MiB of them, so that placing and drawing overlap."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,12 +110,22 @@ class OpenGLEvaluator(OpenGLBase):
     ) -> np.ndarray:
         """(N, k) int64 sums of the weights that each candidate covers in each tile."""
         count = transforms.shape[1]
-        step = CANDIDATES * self._atlas.most_groups(tiles.tiles.size)
-        parts = [np.zeros((0, len(tiles.tiles.views)), np.int64)]
+        parts: list[Future[np.ndarray]] = []
+        step = self._most_at_once(tiles, len(segments))
         for begin in range(0, count, step):
             placement = self._placed(transforms[:, begin : begin + step], segments, tiles.tiles)
-            parts.append(self.thread.call(self._add_up, tiles, placement, segments))
-        return np.concatenate(parts)
+            # while one batch is drawn the next is placed
+            for part in parts[-2:-1]:
+                part.result()
+            parts.append(self.thread.submit(self._add_up, tiles, placement, segments))
+        empty = np.zeros((0, len(tiles.tiles.views)), np.int64)
+        return np.concatenate([empty, *(part.result() for part in parts)])
+
+    def _most_at_once(self, tiles: DeviceTiles, segments: int) -> int:
+        """How many candidates, whole groups of them, a batch may have."""
+        matrices = len(tiles.tiles.views) * max(1, segments)
+        groups = _MOST_MATRICES // matrices // CANDIDATES
+        return CANDIDATES * max(1, min(groups, self._atlas.most_groups(tiles.tiles.size)))
 
     def _add_up(
         self, tiles: DeviceTiles, placement: Placement, segments: tuple[int, ...]

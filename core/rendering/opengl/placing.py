@@ -11,9 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...body.body import Body
-from ...body.kinematics import joint_transforms
 from ...cameras.camera import Camera
 from ..model import GUARD_PX, NEAR, enclosing_spheres
+from .chain import Chain
 
 HIDDEN, WHOLE, CUT = 0, 1, 2
 """A segment that covers no pixel of the window; one to draw as it is; one to clip first."""
@@ -109,16 +109,17 @@ class Placer:
 
     def __init__(self, body: Body, cameras: Sequence[Camera], level: int):
         self.body, self.surface = body, body.surfaces[level]
+        self._chain = Chain(body)
         self.projections = np.stack([camera.projection for camera in cameras])
         self.spheres = enclosing_spheres(self.surface.vertices, self.surface.vertex_starts)
 
     def transforms(self, poses: np.ndarray) -> np.ndarray:
         """(V or 1, N, J, 3, 4) world from joint of poses (N, V, D) or (N, D)."""
         if poses.ndim == 2:
-            return joint_transforms(self.body, poses)[None]
+            return self._chain.transforms(poses)[None]
         count, views, dofs = poses.shape
-        flat = joint_transforms(self.body, poses.swapaxes(0, 1).reshape(-1, dofs))
-        return flat.reshape(views, count, -1, 3, 4)
+        flat = self._chain.transforms(poses.swapaxes(0, 1).reshape(-1, dofs))
+        return flat.reshape(views, count, len(self.body.joint_names), 3, 4)
 
     def placed(
         self,

@@ -253,8 +253,11 @@ def test_bounds_and_transforms_are_those_of_the_reference(scenes, per_view):
     for part in ([0, 1], [2], []):
         boxes = evaluator.bounds(poses, part)
         np.testing.assert_array_equal(boxes, reference.bounds(poses, part))
+    assert evaluator.bounds(poses[:0], [0]).shape == (0, len(cameras), 4)
     if not per_view:
-        np.testing.assert_allclose(evaluator.transforms(poses), reference.transforms(poses))
+        assert evaluator.transforms(poses[:0]).shape == (0, 4, 3, 4)
+        ours, theirs = evaluator.transforms(poses), reference.transforms(poses)
+        np.testing.assert_allclose(ours, theirs, rtol=0, atol=1e-14)
 
 
 def test_weights_that_nobody_holds_any_more_leave_the_device(scenes):
