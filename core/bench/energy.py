@@ -115,6 +115,7 @@ def energy_figures(settings: EnergySettings, progress: Progress) -> EnergyFigure
             progress.note(text)
 
     tell = Teller(note, lambda: progress.advance(None))
+    facts = machine(opengl_renderer())
     body = template("sixteen_segment")
     motion = sequence(body, "A", _POSE_FRAME + 1)
     scene = Scene(body, motion[_POSE_FRAME], motion[_SEEN_FRAME])
@@ -130,7 +131,7 @@ def energy_figures(settings: EnergySettings, progress: Progress) -> EnergyFigure
     levels = level_check(body, cameras, settings.fits, tell.advance)
     fits = {name: table2(body, cameras, name, settings.frames, tell.advance) for name in SEQUENCES}
     return EnergyFigures(
-        machine=machine(opengl_renderer()),
+        machine=facts,
         titles={row.name: row.title for row in rows},
         table1=tables,
         cameras=costs,

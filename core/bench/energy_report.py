@@ -147,8 +147,14 @@ def _table1(table: Measured) -> dict:
 
 
 def _rates(rates: Rates) -> dict:
+    fastest = rates.fastest
     values = zip(rates.medians.items(), rates.batches, rates.differences, strict=True)
     return {
-        name: {"per_second": rate, "batch": batch, "differs_px": difference}
+        name: {
+            "per_second": rate,
+            "best_per_second": fastest[name],
+            "batch": batch,
+            "differs_px": difference,
+        }
         for (name, rate), batch, difference in values
     }

@@ -8,19 +8,25 @@ from ..results.report import versions
 
 
 def machine(renderer: str | None) -> dict:
-    """Processor, cores, system and versions; ``renderer`` is OpenGL's name for what draws."""
+    """Processor, cores, load, system and versions; ``renderer`` is OpenGL's name for what draws.
+
+    Asked before anything is measured, the load is that of others: processes that want a core.
+    """
     try:
         cores = len(os.sched_getaffinity(0))
     except AttributeError:
         cores = os.cpu_count() or 1
-    return {"processor": _processor(), "cores": cores, "opengl": renderer, **versions()}
+    load = os.getloadavg()[0] if hasattr(os, "getloadavg") else None
+    facts = {"processor": _processor(), "cores": cores, "load_before": load, "opengl": renderer}
+    return {**facts, **versions()}
 
 
 def machine_words(facts: dict) -> str:
     """The machine in one line."""
     drawn = f", OpenGL by {facts['opengl']}" if facts["opengl"] else ""
-    python = f"Python {facts['python']}"
-    return f"{facts['processor']}, {facts['cores']} cores, {facts['machine']}, {python}{drawn}"
+    load = "" if facts["load_before"] is None else f" (load {facts['load_before']:.1f} before)"
+    cores = f"{facts['cores']} cores{load}"
+    return f"{facts['processor']}, {cores}, {facts['machine']}, Python {facts['python']}{drawn}"
 
 
 def _processor() -> str:

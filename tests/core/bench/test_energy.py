@@ -133,7 +133,7 @@ def test_table_2_has_both_sequences_and_the_same_poses_with_and_without_prerende
 
 
 def test_the_machine_is_named(report):
-    assert {"processor", "cores", "python", "opengl"} <= set(report["machine"])
+    assert {"processor", "cores", "load_before", "python", "opengl"} <= set(report["machine"])
 
 
 def test_files_are_whole_tables_and_pictures(figures, tmp_path):
