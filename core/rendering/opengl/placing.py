@@ -37,19 +37,21 @@ class Placement:
     reach: np.ndarray
 
 
-def window_planes(projection: np.ndarray, window: np.ndarray, margin: float) -> np.ndarray:
-    """(9, 4) unit planes in the world, positive inside: near, the region's sides, the window's.
+def window_planes(projections: np.ndarray, windows: np.ndarray, margin: float) -> np.ndarray:
+    """(V, 9, 4) unit planes in the world, positive inside: near, the region's sides, the window's.
 
-    The region is the window with ``margin`` px all round.
+    The region is the window (V, 4) with ``margin`` px all round.
     """
-    x, y, depth = projection
-    x0, y0, x1, y1 = np.asarray(window, float) - [0, 0, 1, 1]
-    planes = [depth - [0, 0, 0, NEAR]]
-    for reach in (margin, 1.0):
-        planes += [x - (x0 - reach) * depth, (x1 + reach) * depth - x]
-        planes += [y - (y0 - reach) * depth, (y1 + reach) * depth - y]
-    stacked = np.stack(planes)
-    return stacked / np.linalg.norm(stacked[:, :3], axis=1, keepdims=True)
+    plane, depth = projections[:, :2], projections[:, 2:]
+    low, high = windows[:, :2, None], windows[:, 2:, None] - 1
+    near = depth - [0, 0, 0, NEAR]
+    sides = [
+        side
+        for reach in (margin, 1)
+        for side in (plane - (low - reach) * depth, (high + reach) * depth - plane)
+    ]
+    planes = np.concatenate([near, *sides], axis=1)
+    return planes / np.linalg.norm(planes[:, :, :3], axis=2, keepdims=True)
 
 
 def _distances(centres: np.ndarray, planes: np.ndarray) -> np.ndarray:
@@ -149,9 +151,7 @@ class Placer:
         spheres = self.spheres[chosen]
         local = np.append(spheres[:, :3], np.ones((len(chosen), 1)), axis=1)
         centres = np.moveaxis((world * local[:, None]).sum(axis=-1), 3, 1)
-        planes = np.stack(
-            [window_planes(p, w, margin) for p, w in zip(projections, windows, strict=True)]
-        )
+        planes = window_planes(projections, windows, margin)
         states = _states(centres, spheres[:, 3], planes)
         reach = _reach(centres, spheres[:, 3], projections, windows, states)
         return Placement(rows.astype(np.float32), states, reach)

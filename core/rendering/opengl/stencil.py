@@ -60,11 +60,14 @@ class Frames:
 
     def __init__(self, gl: Any, size: tuple[int, int]):
         self._gl, self.size = gl, size
+        self._observed: np.ndarray | None = None
         self.kept, self.kept_texture = _framebuffer(gl, size)
         self.drawn, self.drawn_texture = _framebuffer(gl, size)
 
     def keep(self, observed: np.ndarray) -> None:
-        """Bit planes (H, W) uint8, to be written each time."""
+        """Bit planes (H, W) uint8, to be written each time; they must not change any more."""
+        if observed is self._observed:
+            return
         # PyOpenGL's own wrapper does not know this type of pixels
         from OpenGL.raw.GL.VERSION.GL_1_1 import glTexSubImage2D
 
@@ -75,6 +78,7 @@ class Frames:
         gl.glPixelStorei(gl.GL_UNPACK_ALIGNMENT, 4)
         form = gl.GL_DEPTH_STENCIL, gl.GL_UNSIGNED_INT_24_8
         glTexSubImage2D(gl.GL_TEXTURE_2D, 0, 0, 0, *self.size, *form, address(packed))
+        self._observed = observed
 
     def delete(self) -> None:
         """Gives their memory back."""
