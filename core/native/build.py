@@ -27,7 +27,11 @@ TARGETS = {  # ours: (zig's name, wheel platform, suffix of the library)
 }
 FLAGS = ("-O3", "-std=c11", "-Wall", "-Wextra", "-ffp-contract=off", "-fno-sanitize=undefined",
          "-fno-math-errno", "-fvisibility=hidden", "-s", "-g0")  # fmt: skip
-PATHS = {"base": (), "v3": ("-mcpu=x86_64_v3",), "v4": ("-mcpu=x86_64_v4",)}
+PATHS = {
+    "base": (),
+    "v3": ("-mcpu=x86_64_v3",),
+    "v4": ("-mcpu=x86_64_v4", "-mprefer-vector-width=512"),
+}
 
 
 def host_target() -> str:
@@ -74,7 +78,7 @@ def _objects(target: str) -> list[tuple[str, str, tuple[str, ...]]]:
     return whole + [
         (f"{name}_{path}.o", f"{name}.c", (f"-DSM_PATH={path}", *flags))
         for path, flags in paths.items()
-        for name in ("coverage", "contours", "triangles")
+        for name in ("coverage", "closed", "contours", "triangles")
     ]
 
 

@@ -10,57 +10,27 @@
 
 #include <math.h>
 
-enum { CHUNK = 256 };
+enum { CHUNK = 256, GLANCES = 64 };
 
-/* A camera as a segment sees it. */
-typedef struct {
-    float at[3];       /* m, in the joint's space */
-    float reach;       /* m, no point of the segment is farther */
-    float edge, step;  /* what the two factors of the margins are multiplied by */
-    float slack;       /* m, for rounding */
-    int32_t front;     /* sign in the image of a triangle that shows its front */
-} eye;
-
-static void look(const sm_views *views, int32_t view, const double *m, const double *sphere, eye *out) {
-    const double *optics = views->optics + 5 * (size_t)view, *row = views->projections + 12 * (size_t)view + 8;
-    double away[3], depth = row[3], square = 0.0, radius = sphere[3] * (1.0 + 1e-6) + 1e-9, own = 0.0;
-    for (int i = 0; i < 3; i++) {
-        double p = m[4 * i] * sphere[0] + m[4 * i + 1] * sphere[1] + m[4 * i + 2] * sphere[2] + m[4 * i + 3];
-        away[i] = optics[i] - m[4 * i + 3];
-        depth += row[i] * p;
-        square += (p - optics[i]) * (p - optics[i]);
-        own += sphere[i] * sphere[i];
-    }
-    for (int j = 0; j < 3; j++) out->at[j] = (float)(m[j] * away[0] + m[4 + j] * away[1] + m[8 + j] * away[2]);
-    double distance = sqrt(square), near = depth - radius, far = depth + radius, half = 0.5 + 1e-3;
-    double side = square - depth * depth, tangent = (sqrt(side > 0.0 ? side : 0.0) + radius) / near;
-    double metres = far * far * far / (65536.0 * fabs(optics[3])) * (1.0 + 1e-4);
-    double steps = 256.0 * 1.41422 * optics[4] * sqrt(1.0 + tangent * tangent) / near;
-    out->reach = (float)((distance + radius) * (1.0 + 1e-4));
-    out->edge = (float)(metres * 2.0 * half * steps);
-    out->step = (float)(metres * 8.0 * half * half);
-    out->slack = (float)(2e-6 * (distance + radius + 2.0 * sqrt(own)));
-    out->front = optics[3] > 0.0 ? -1 : 1;
-}
-
-/* Finds the clusters round which not all faces are known to look the same way. */
-static int32_t glance(const sm_body *body, int32_t segment, const eye *e, sm_work *work) {
-    int32_t start = body->cluster_starts[segment], n = body->cluster_starts[segment + 1] - start, runs = 0;
-    const float *planes[8];
-    for (int k = 0; k < 8; k++) planes[k] = body->cluster_planes + (size_t)k * body->clusters + start;
-    const float *restrict x = planes[0], *restrict y = planes[1], *restrict z = planes[2], *restrict d = planes[3];
-    const float *restrict spread = planes[4], *restrict own = planes[5], *restrict m1 = planes[6], *restrict m2 = planes[7];
-    uint8_t *restrict known = work->glances;
+int32_t sm_glance(const float *planes, size_t stride, int32_t start, int32_t n, const eye *e, int32_t *wanted) {
+    const float *restrict x = planes + start, *restrict y = x + stride, *restrict z = y + stride, *restrict d = z + stride;
+    const float *restrict spread = d + stride, *restrict own = spread + stride, *restrict m1 = own + stride, *restrict m2 = m1 + stride;
     float ex = e->at[0], ey = e->at[1], ez = e->at[2], reach = e->reach, edge = e->edge, step = e->step, slack = e->slack;
-    for (int32_t c = 0; c < n; c++) {
-        float side = x[c] * ex + y[c] * ey + z[c] * ez - d[c];
-        known[c] = fabsf(side) > reach * spread[c] + own[c] + edge * m1[c] + step * m2[c] + slack;
+    int32_t found = 0;
+    for (int32_t first = 0; first < n; first += GLANCES) {
+        int32_t count = n - first < GLANCES ? n - first : GLANCES;
+        uint8_t known[GLANCES];
+        for (int32_t c = 0; c < count; c++) {
+            int32_t k = first + c;
+            float side = x[k] * ex + y[k] * ey + z[k] * ez - d[k];
+            known[c] = fabsf(side) > reach * spread[k] + own[k] + edge * m1[k] + step * m2[k] + slack;
+        }
+        for (int32_t c = 0; c < count; c++) {
+            wanted[found] = start + first + c;
+            found += !known[c];
+        }
     }
-    for (int32_t c = 0; c < n; c++) {
-        work->runs[runs] = start + c;
-        runs += !known[c];
-    }
-    return runs;
+    return found;
 }
 
 /* Which way every face looks, as far as its plane can tell. */
@@ -227,10 +197,10 @@ static void take_edges(const sm_body *body, const int32_t *found, int32_t n, int
 }
 
 /* Turns one row's crossings into spans of positive winding. */
-static void fill_row(uint64_t *row, int32_t *slots, int32_t n) {
+static void fill_row(const sm_picture *picture, int32_t row, int32_t *slots, int32_t n) {
     if (n == 2) {
         int32_t a = slots[0] >> 3, b = slots[1] >> 3;
-        set_span(row, a < b ? a : b, a < b ? b : a);
+        set_span(picture, row, a < b ? a : b, a < b ? b : a);
         return;
     }
     for (int32_t i = 1; i < n; i++) {
@@ -243,28 +213,26 @@ static void fill_row(uint64_t *row, int32_t *slots, int32_t n) {
         int32_t before = winding;
         winding += (slots[i] & 7) - 4;
         if (before <= 0 && winding > 0) left = slots[i] >> 3;
-        if (before > 0 && winding <= 0) set_span(row, left, slots[i] >> 3);
+        if (before > 0 && winding <= 0) set_span(picture, row, left, slots[i] >> 3);
     }
 }
 
-int32_t sm_draw_contours(const sm_body *body, const sm_views *views, int32_t view, int32_t segment,
-                         const double *a, sm_work *work) {
-    sm_picture *picture = work->pictures + view;
-    eye e;
-    look(views, view, sm_transform(body, work, view, segment), body->spheres + 4 * (size_t)segment, &e);
-    int32_t runs = glance(body, segment, &e, work);
+int32_t sm_draw_contours(const sm_body *body, int32_t segment, const eye *e, const double *a, sm_picture *picture,
+                         sm_work *work) {
+    int32_t start = body->cluster_starts[segment], n = body->cluster_starts[segment + 1] - start;
+    int32_t runs = sm_glance(body->cluster_planes, (size_t)body->clusters, start, n, e, work->runs);
     if (!runs) return 1;
-    judge(body, segment, &e, work);
+    judge(body, segment, e, work);
     int32_t found = find_edges(body, runs, work);
     snap_ends(body, segment, a, found, work);
-    settle(body, segment, found, e.front, work);
+    settle(body, segment, found, e->front, work);
 
     edges drawn;
     drawn.n = drawn.overflow = 0;
     drawn.top = picture->bottom, drawn.bottom = picture->top;
     for (int32_t k = 0; k < found; k += CHUNK) {
-        int32_t n = found - k < CHUNK ? found - k : CHUNK;
-        take_edges(body, work->found + k, n, e.front, picture, &drawn, work);
+        int32_t count = found - k < CHUNK ? found - k : CHUNK;
+        take_edges(body, work->found + k, count, e->front, picture, &drawn, work);
         cross_rows(&drawn, picture->width, work);
     }
     if (drawn.top >= drawn.bottom) return 1;
@@ -272,9 +240,9 @@ int32_t sm_draw_contours(const sm_body *body, const sm_views *views, int32_t vie
         memset(work->counts + drawn.top, 0, (size_t)(drawn.bottom - drawn.top));
         return 0;
     }
-    open_rows(picture, drawn.top, drawn.bottom);
+    open_words(picture, 0, picture->words, drawn.top, drawn.bottom);
     for (int32_t row = drawn.top; row < drawn.bottom; row++) {
-        fill_row(picture->rows + (size_t)picture->words * row, work->slots + row * SM_SLOTS, work->counts[row]);
+        fill_row(picture, row, work->slots + row * SM_SLOTS, work->counts[row]);
         work->counts[row] = 0;
     }
     return 1;

@@ -48,43 +48,86 @@ static void *part(void *base, size_t *at, int64_t count, size_t size) {
     return (void *)((((uintptr_t)base + 63) & ~(uintptr_t)63) + start);
 }
 
+static void cut_sight(void *base, size_t *at, int64_t lanes, sm_sight *sight) {
+    float **numbers[] = {&sight->at[0], &sight->at[1], &sight->at[2], &sight->reach, &sight->edge, &sight->step, &sight->slack};
+    sight->a = part(base, at, 12 * lanes, sizeof(double));
+    for (int i = 0; i < 7; i++) *numbers[i] = part(base, at, lanes, sizeof(float));
+    sight->where = part(base, at, lanes, sizeof(int32_t));
+    sight->front = part(base, at, lanes, sizeof(int32_t));
+}
+
+/* Returns the bytes from planes[0] on that must be 0. */
+static size_t cut_edges(void *base, size_t *at, int64_t clusters, int64_t height, int64_t words, sm_edges *e) {
+    int64_t most = 8 * SM_CLUSTER * (clusters + 1) + 4 * height, rows = (height + 15) & ~7;
+    e->rows = (size_t)rows;
+    e->most = (size_t)most;
+    e->open = part(base, at, clusters / 4 + 1, sizeof(uint64_t));
+    e->margins = part(base, at, clusters + 16, sizeof(float));
+    e->sure = part(base, at, most, sizeof(uint32_t));
+    e->row = part(base, at, most, sizeof(int32_t));
+    e->end = part(base, at, most, sizeof(int32_t));
+    e->at = part(base, at, most, sizeof(uint64_t));
+    e->slope = part(base, at, most, sizeof(uint64_t));
+    e->minus = part(base, at, most, sizeof(uint64_t));
+    size_t begin = *at;
+    for (int i = 0; i < 3; i++) e->planes[i] = part(base, at, rows * words, sizeof(uint64_t));
+    e->counts = part(base, at, rows, sizeof(uint64_t));
+    return *at - begin;
+}
+
+static void clear_picture(sm_picture *picture) { memset(picture->ranges, 0, 8 * (size_t)picture->words); }
+
 size_t sm_cut(const sm_body *body, const sm_views *views, void *base, sm_work *work) {
-    int64_t height = 0, vertices = largest(body->vertex_starts, body->segments);
+    int64_t height = 0, most_words = 0, vertices = largest(body->vertex_starts, body->segments);
     int64_t clusters = largest(body->cluster_starts, body->segments), faces = SM_CLUSTER * clusters;
     int64_t records = most_records(body);
-    for (int32_t v = 0; v < views->views; v++)
+    for (int32_t v = 0; v < views->views; v++) {
+        int64_t words = (views->sizes[2 * v] + 63) >> 6;
         if (views->sizes[2 * v + 1] > height) height = views->sizes[2 * v + 1];
+        if (words > most_words) most_words = words;
+    }
     size_t at = 0;
     work->transforms = part(base, &at, 12 * (int64_t)body->joints * views->views, sizeof(double));
+    work->moved = part(base, &at, body->joints, 1);
     work->needed = part(base, &at, body->joints, 1);
     work->facing = part(base, &at, faces + 2, 1);
-    work->glances = part(base, &at, clusters, 1);
-    work->runs = part(base, &at, clusters + 1, sizeof(int32_t));
+    int64_t edge_clusters = largest(body->edge_starts, body->segments);
+    work->runs = part(base, &at, (clusters > edge_clusters ? clusters : edge_clusters) + 1, sizeof(int32_t));
     work->found = part(base, &at, records + 1, sizeof(int32_t));
     work->unknown = part(base, &at, faces + 1, sizeof(int32_t));
     work->places = part(base, &at, vertices, sizeof(int32_t));
     work->wanted = part(base, &at, vertices + 1, sizeof(int32_t));
     work->qx = part(base, &at, vertices, sizeof(int32_t));
     work->qy = part(base, &at, vertices, sizeof(int32_t));
+    work->points = part(base, &at, vertices + 8, sizeof(int64_t));
     work->counts = part(base, &at, height, 1);
     work->slots = part(base, &at, height * SM_SLOTS, sizeof(int32_t));
+    size_t cleared = cut_edges(base, &at, edge_clusters, height, most_words, &work->edges);
+    cut_sight(base, &at, (views->views + SM_LANES - 1) / SM_LANES * SM_LANES, &work->sight);
     work->pictures = part(base, &at, views->views, sizeof(sm_picture));
-    uint64_t *rows = part(base, &at, views->word_starts[views->views], sizeof(uint64_t));
+    int32_t *ranges = part(base, &at, 2 * most_words * views->views, sizeof(int32_t));
+    uint64_t *bits = part(base, &at, views->word_starts[views->views] + 8, sizeof(uint64_t));
     if (!base) return at + 64;
     memset(work->counts, 0, (size_t)height);
-    for (int32_t v = 0; v < views->views; v++) {
-        int32_t width = views->sizes[2 * v], words = (width + 63) >> 6;
-        work->pictures[v] = (sm_picture){width, words, 0, views->sizes[2 * v + 1], 0, 0, rows + views->word_starts[v]};
+    memset(work->edges.planes[0], 0, cleared);
+    for (int32_t v = 0; v < views->views; v++, ranges += 2 * most_words) {
+        int32_t width = views->sizes[2 * v], rows = views->sizes[2 * v + 1];
+        work->pictures[v] = (sm_picture){width, rows, (width + 63) >> 6, 0, rows, ranges, bits + views->word_starts[v]};
+        clear_picture(&work->pictures[v]);
     }
     return at + 64;
 }
 
-/* Takes one candidate's transforms from its pose or, where per_view, its V poses; returns the next. */
+/* Takes one candidate's transforms from its pose or, where per_view, its V poses; returns the next.
+ * `follows` says that the candidate before has just been taken. */
 static const double *take_pose(const sm_body *body, const sm_views *views, const double *pose, int32_t per_view,
-                               sm_work *work) {
+                               int follows, sm_work *work) {
+    int32_t count = per_view ? views->views : 1;
+    ptrdiff_t before = (ptrdiff_t)count * body->dofs;
     work->stride = per_view ? 12 * (size_t)body->joints : 0;
-    for (int32_t v = 0; v < (per_view ? views->views : 1); v++, pose += body->dofs)
-        sm_pose_transforms(body, pose, work->needed, work->transforms + work->stride * (size_t)v);
+    for (int32_t v = 0; v < count; v++, pose += body->dofs)
+        sm_pose_transforms(body, pose, follows ? pose - before : 0, work->moved, work->needed,
+                           work->transforms + work->stride * (size_t)v);
     return pose;
 }
 
@@ -104,6 +147,9 @@ static int32_t check_body(const sm_body *body) {
         body->cluster_starts[n] != body->clusters || body->clusters < 0 || largest(body->run_starts, body->clusters) < 0 ||
         body->run_starts[0] || body->run_starts[body->clusters] != body->records || body->records % SM_RUN ||
         body->clusters > INT32_MAX / (6 * SM_CLUSTER))
+        return SM_SIZE;
+    if (largest(body->edge_starts, n) < 0 || body->edge_starts[0] || body->edge_starts[n] != body->edge_clusters ||
+        body->edge_clusters > INT32_MAX / (4 * SM_CLUSTER))
         return SM_SIZE;
     for (int32_t j = 0; j < body->joints; j++) {
         if (body->parents[j] < -1 || body->parents[j] >= j) return SM_INDEX;
@@ -128,6 +174,12 @@ static int32_t check_segment(const sm_body *body, int32_t s) {
     int32_t first = body->cluster_starts[s], clusters = body->cluster_starts[s + 1] - first;
     int32_t record = records_from(body, s), records = records_from(body, s + 1) - record;
     int64_t faces = SM_CLUSTER * (int64_t)clusters;
+    size_t edge = SM_CLUSTER * (size_t)body->edge_starts[s], edges = SM_CLUSTER * (size_t)body->edge_starts[s + 1];
+    for (size_t i = edge; i < edges; i++) {
+        uint32_t p = body->edge_ends[i] & 0xffff, q = body->edge_ends[i] >> 16;
+        if (p >= (uint32_t)vertices || q >= (uint32_t)vertices || ((p | q) & 0x8000)) return SM_INDEX;
+    }
+    if (!in_range(body->edge_corners + 4 * edge, 4 * (int64_t)(edges - edge), vertices)) return SM_INDEX;
     for (int32_t c = first; c < first + clusters; c++)
         if (body->run_starts[c] % SM_RUN) return SM_SIZE;
     if (!in_range(body->corners + 3 * SM_CLUSTER * (size_t)first, 3 * faces, vertices) ||
@@ -179,7 +231,7 @@ static int32_t begin(const sm_body *body, const sm_views *views, int64_t n, cons
 int32_t sm_transforms(const sm_body *body, const double *poses, int64_t n, double *out) {
     if (n < 0) return SM_SIZE;
     for (int64_t i = 0; i < n; i++)
-        sm_pose_transforms(body, poses + i * body->dofs, 0, out + 12 * i * body->joints);
+        sm_pose_transforms(body, poses + i * body->dofs, 0, 0, 0, out + 12 * i * body->joints);
     return SM_OK;
 }
 
@@ -195,8 +247,8 @@ int32_t sm_energies(const sm_body *body, const sm_views *views, const sm_weights
         work.pictures[v].bottom = weights->rows[2 * v + 1];
     }
     for (int64_t i = 0; i < n; i++) {
-        poses = take_pose(body, views, poses, per_view, &work);
-        for (int32_t v = 0; v < views->views; v++) work.pictures[v].y0 = work.pictures[v].y1 = 0;
+        poses = take_pose(body, views, poses, per_view, i > 0, &work);
+        for (int32_t v = 0; v < views->views; v++) clear_picture(&work.pictures[v]);
         path->draw(body, views, segments, count, &work);
         for (int32_t v = 0; v < views->views; v++)
             *out++ = weights->constants[v] + path->sum(views, weights, v, &work.pictures[v]);
@@ -210,13 +262,16 @@ int32_t sm_silhouettes(const sm_body *body, const sm_views *views, const double 
     int32_t error = begin(body, views, 1, segments, count, scratch, bytes, &work);
     if (error) return error;
     memset(out, 0, 8 * (size_t)views->word_starts[views->views]);
-    take_pose(body, views, pose, per_view, &work);
+    take_pose(body, views, pose, per_view, 0, &work);
     path_of(views)->draw(body, views, segments, count, &work);
     for (int32_t v = 0; v < views->views; v++) {
         const sm_picture *picture = &work.pictures[v];
-        size_t words = (size_t)picture->words, start = words * picture->y0;
-        memcpy(out + views->word_starts[v] + start, picture->rows + start,
-               8 * words * (size_t)(picture->y1 - picture->y0));
+        for (int32_t k = 0; k < picture->words; k++) {
+            const int32_t *range = picture->ranges + 2 * k;
+            size_t at = (size_t)picture->height * (size_t)k + (size_t)range[0];
+            if (range[0] < range[1])
+                memcpy(out + views->word_starts[v] + at, picture->bits + at, 8 * (size_t)(range[1] - range[0]));
+        }
     }
     return SM_OK;
 }
@@ -251,7 +306,7 @@ int32_t sm_bounds(const sm_body *body, const sm_views *views, const double *pose
     int32_t error = begin(body, views, n, segments, count, scratch, bytes, &work);
     if (error) return error;
     for (int64_t i = 0; i < n; i++) {
-        poses = take_pose(body, views, poses, per_view, &work);
+        poses = take_pose(body, views, poses, per_view, i > 0, &work);
         for (int32_t v = 0; v < views->views; v++, out += 4) bound(body, views, v, segments, count, out, &work);
     }
     return SM_OK;
@@ -263,7 +318,7 @@ int32_t sm_snapped(const sm_body *body, const sm_views *views, const double *pos
     if (!path_of(views)) return SM_PROCESSOR;
     if (!scratch || bytes < sm_scratch(body, views)) return SM_SCRATCH;
     sm_cut(body, views, scratch, &work);
-    sm_pose_transforms(body, pose, 0, work.transforms);
+    sm_pose_transforms(body, pose, 0, 0, 0, work.transforms);
     work.stride = 0;
     for (int32_t v = 0; v < views->views; v++) {
         for (int32_t s = 0; s < body->segments; s++) {

@@ -23,9 +23,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define SM_ABI 2
+#define SM_ABI 3
 #define SM_CLUSTER 16 /* faces to a cluster */
 #define SM_RUN 8      /* the records of a cluster are filled up to a multiple */
+#define SM_LANES 8     /* views side by side */
 #define SM_GUARD_PX 16000.0 /* 256 times this fits the snapped coordinates (22 bits and a sign) */
 
 #if defined(_WIN32)
@@ -42,7 +43,7 @@ enum { SM_PLANES = 0, SM_MAPS = 1 };
  * clusters of SM_CLUSTER, each cluster's in one segment (its last one repeated to fill up), so that
  * most of them are known to face the camera, or not, at one glance. */
 typedef struct {
-    int32_t joints, dofs, segments, vertices, clusters, records;
+    int32_t joints, dofs, segments, vertices, clusters, records, edge_clusters;
     const int32_t *parents;         /* (J), parents before children, -1 for the root */
     const double *offsets;          /* (J, 3) m, rest position in the parent's space */
     const int32_t *dof_starts;      /* (J + 1), joint j is moved by the rows [j] to [j + 1] */
@@ -54,7 +55,7 @@ typedef struct {
     const int32_t *cluster_starts;  /* (S + 1) */
     const int32_t *run_starts;      /* (clusters + 1) the edge records that a cluster owns;
                                        multiples of SM_RUN */
-    const float *x, *y, *z;         /* (vertices) m, in the joint's space */
+    const float *x, *y, *z;         /* (vertices + 8) m, in the joint's space; the last ones fill up */
     const int32_t *corners;         /* (faces, 3) vertices, counted from the segment's first */
     const float *face_planes;       /* (6, faces) normal n, n . p, two factors of the margin within
                                        which the snapped triangle may face either way */
@@ -65,22 +66,33 @@ typedef struct {
     const int32_t *record_faces;    /* (records, 2) a face that runs from p to q and one that runs
                                        from q to p, counted likewise; the segment's number of faces
                                        stands for "no face", twice one more for "no record" */
+    const uint8_t *connected;       /* (S) whether the segment's triangles hang together */
+    const int32_t *edge_starts;     /* (S + 1) clusters of the edges of closed segments; others
+                                       have none */
+    const float *edge_cones;        /* (8, edge_clusters) and 16 to fill up, like cluster_planes, of all faces beside
+                                       the cluster's edges */
+    const float *edge_sides;        /* (edge_clusters, 8, 16) row by row n, n . p of the face that
+                                       runs from p to q, and of that which runs back */
+    const uint32_t *edge_ends;      /* (edge_clusters, 16) p + 2^16 q, vertices of at most 15 bits */
+    const int32_t *edge_corners;    /* (edge_clusters, 16, 4) p, q and the third of either face */
 } sm_body;
 
-/* V pinhole cameras, each with its own size. Row y of view v is word_widths[v] words from
- * word_starts[v] + y * word_widths[v] on; bit x & 63 of word x >> 6 is pixel x. */
+/* V pinhole cameras, each with its own size. Pictures lie column by column, 64 pixels wide: pixel
+ * (x, y) of view v is bit x & 63 of word word_starts[v] + (x >> 6) * H + y. What is needed for all
+ * views at once lies side by side for L views, V rounded up to a multiple of SM_LANES; views that
+ * fill up are copies of the first one. */
 typedef struct {
     int32_t views;
     int32_t processor;          /* code path: what sm_processor() said, or a lower one */
     double near;                /* m, distance of the clipping plane in front of the camera */
     const int32_t *sizes;       /* (V, 2) px, width and height, at most 32767 */
-    const double *projections;  /* (V, 3, 4) world metres to homogeneous px */
-    const double *planes;       /* (V, 9, 4) unit planes in the world, positive inside: near, four
+    const double *projections;  /* (3, 4, L) world metres to homogeneous px */
+    const double *planes;       /* (9, 4, L) unit planes in the world, positive inside: near, four
                                    sides of the guard region, four sides of the picture */
-    const double *optics;       /* (V, 5) centre in the world, det K, largest stretch of K in px */
+    const double *optics;       /* (5, L) centre in the world, det K, largest stretch of K in px */
     const int64_t *word_starts; /* (V + 1) */
-    const int64_t *map_starts;  /* (V + 1), pixels, H * W each */
-    const int64_t *sum_starts;  /* (V + 1), prefix sums, H * (W + 1) each */
+    const int64_t *map_starts;  /* (V + 1), pixels, W * H each */
+    const int64_t *sum_starts;  /* (V + 1), prefix sums, (W + 1) * H each */
 } sm_views;
 
 /* Weights of V views: as two bit planes where all weights are -1, 0 or 1, else as maps. */
@@ -88,8 +100,8 @@ typedef struct {
     int32_t kind;       /* SM_PLANES: `plus`, `minus`; SM_MAPS: `maps`, `sums` */
     uint64_t *plus;     /* (words) pixels of weight +1 */
     uint64_t *minus;    /* (words) pixels of weight -1 */
-    int16_t *maps;      /* (pixels) */
-    int32_t *sums;      /* (sums) of the weights left of each pixel of the row */
+    int16_t *maps;      /* (pixels), column by column */
+    int32_t *sums;      /* (sums) of the weights left of each pixel, column by column */
     int64_t *constants; /* (V) energy of an empty rendering */
     int32_t *rows;      /* (V, 2) first and last row + 1 that hold a weight; set by the kernel */
 } sm_weights;
@@ -107,14 +119,15 @@ SM_API size_t sm_scratch(const sm_body *, const sm_views *);
 /* World from joint of n poses (n, D): out (n, J, 3, 4). */
 SM_API int32_t sm_transforms(const sm_body *, const double *poses, int64_t n, double *out);
 
-/* Fills planes, or prefix sums, and rows from `maps` (pixels of all views, one after the other). */
-SM_API int32_t sm_prepare(const sm_views *, const int16_t *maps, sm_weights *out);
+/* Fills planes, or maps and prefix sums, and rows from `maps` (pixels of all views, one after the
+ * other, row by row). `column` is scratch as high as the highest view. */
+SM_API int32_t sm_prepare(const sm_views *, const int16_t *maps, sm_weights *out, uint64_t *column);
 
 /* Takes fixed pixels out of the weights: out's constants become those of `in` plus the weights
  * under `fixed` (words). Windows (V, 4), x0, y0, x1, y1 (exclusive) or null: weights outside are
  * dropped. */
 SM_API int32_t sm_mask(const sm_views *, const sm_weights *in, const uint64_t *fixed,
-                       const int32_t *windows, sm_weights *out);
+                       const int32_t *windows, sm_weights *out, uint64_t *column);
 
 /* Energies (n, V) of poses (n, D), or (n, V, D) where per_view, of `count` segments. */
 SM_API int32_t sm_energies(const sm_body *, const sm_views *, const sm_weights *,
@@ -122,7 +135,7 @@ SM_API int32_t sm_energies(const sm_body *, const sm_views *, const sm_weights *
                            const int32_t *segments, int32_t count, int64_t *out, void *scratch,
                            size_t bytes);
 
-/* What segments cover in one pose (D), or (V, D) where per_view: rows of bits, out (words). */
+/* What segments cover in one pose (D), or (V, D) where per_view: bits, out (words). */
 SM_API int32_t sm_silhouettes(const sm_body *, const sm_views *, const double *pose,
                               int32_t per_view, const int32_t *segments, int32_t count,
                               uint64_t *out, void *scratch, size_t bytes);

@@ -12,7 +12,7 @@ from pathlib import Path
 from ..errors import MocapError
 from .build import fingerprint, host_target, library_name
 
-ABI = 2
+ABI = 3
 PLANES, MAPS = 0, 1
 FOLDER = Path(__file__).resolve().parent
 BUILD = f'build it: python -m pip install ziglang, then python "{FOLDER / "build.py"}"'
@@ -29,12 +29,14 @@ class BodyRecord(ctypes.Structure):
 
     _fields_ = (
         *((name, c_int32) for name in ("joints", "dofs", "segments")),
-        *((name, c_int32) for name in ("vertices", "clusters", "records")),
+        *((name, c_int32) for name in ("vertices", "clusters", "records", "edge_clusters")),
         *((name, c_void_p) for name in ("parents", "offsets", "dof_starts", "dof_kinds")),
         *((name, c_void_p) for name in ("dof_axes", "segment_joints", "spheres")),
         *((name, c_void_p) for name in ("vertex_starts", "cluster_starts", "run_starts")),
         *((name, c_void_p) for name in ("x", "y", "z", "corners", "face_planes")),
         *((name, c_void_p) for name in ("cluster_planes", "record_vertices", "record_faces")),
+        *((name, c_void_p) for name in ("connected", "edge_starts", "edge_cones")),
+        *((name, c_void_p) for name in ("edge_sides", "edge_ends", "edge_corners")),
     )
 
 
@@ -70,8 +72,8 @@ def _declare(library: ctypes.CDLL) -> None:
         "sm_check": (c_int32, (body, views)),
         "sm_scratch": (c_size_t, (body, views)),
         "sm_transforms": (c_int32, (body, pointer, c_int64, pointer)),
-        "sm_prepare": (c_int32, (views, pointer, weights)),
-        "sm_mask": (c_int32, (views, weights, pointer, pointer, weights)),
+        "sm_prepare": (c_int32, (views, pointer, weights, pointer)),
+        "sm_mask": (c_int32, (views, weights, pointer, pointer, weights, pointer)),
         "sm_energies": (c_int32, (body, views, weights, *poses, *segments, pointer, *scratch)),
         "sm_silhouettes": (c_int32, (body, views, pointer, c_int32, *segments, pointer, *scratch)),
         "sm_bounds": (c_int32, (body, views, *poses, *segments, pointer, *scratch)),

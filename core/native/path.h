@@ -11,11 +11,26 @@
 #define PATH(name) JOIN(name, SM_PATH)
 #define sm_draw_contours PATH(sm_draw_contours_)
 #define sm_draw_triangles PATH(sm_draw_triangles_)
+#define sm_draw_closed PATH(sm_draw_closed_)
+#define sm_glance PATH(sm_glance_)
+
+/* One of the views of sm_sight. */
+typedef struct {
+    float at[3], reach, edge, step, slack;
+    int32_t front;
+} eye;
 
 /* Draws a segment that lies in the guard region as a whole, by its contours; `a` carries joint's
  * metres to homogeneous px. Returns 0, with nothing drawn, where a row has too many crossings. */
-int32_t sm_draw_contours(const sm_body *, const sm_views *, int32_t view, int32_t segment,
-                         const double *a, sm_work *);
+int32_t sm_draw_contours(const sm_body *, int32_t segment, const eye *, const double *a, sm_picture *, sm_work *);
+
+/* The same for a closed segment, faster. Returns 0 where it is not closed, overlaps itself too often,
+ * or the picture is too high. */
+int32_t sm_draw_closed(const sm_body *, int32_t segment, const eye *, const double *a, sm_picture *, sm_work *);
+
+/* The clusters from `start` on, of n, whose faces are not all known to look the same way, go into
+ * `wanted`; returns their number. `planes` (8, stride) are those of sm_body. */
+int32_t sm_glance(const float *planes, size_t stride, int32_t start, int32_t n, const eye *, int32_t *wanted);
 
 /* Draws any segment, every triangle on its own, clipped: slow, the same picture, no conditions. */
 void sm_draw_triangles(const sm_body *, double near, int32_t segment, const double *a, sm_picture *);
@@ -50,31 +65,35 @@ static inline int is_inside(const double *h, double near) {
     return 1;
 }
 
-static inline void set_span(uint64_t *row, int32_t a, int32_t b) {
+/* Sets the bits from column a to b (exclusive) of a row. */
+static inline void set_span(const sm_picture *picture, int32_t row, int32_t a, int32_t b) {
     if (a >= b) return;
     int32_t first = a >> 6, last = (b - 1) >> 6;
-    uint64_t head = ~0ull << (a & 63), tail = ~0ull >> (63 - ((b - 1) & 63));
+    size_t height = (size_t)picture->height;
+    uint64_t head = ~0ull << (a & 63), tail = ~0ull >> (63 - ((b - 1) & 63)), *word = picture->bits + height * (size_t)first + row;
     if (first == last) {
-        row[first] |= head & tail;
+        *word |= head & tail;
         return;
     }
-    row[first] |= head;
-    for (int32_t k = first + 1; k < last; k++) row[k] = ~0ull;
-    row[last] |= tail;
+    *word |= head;
+    for (int32_t k = first + 1; k < last; k++) *(word += height) = ~0ull;
+    *(word + height) |= tail;
 }
 
-/* Makes the rows from top to bottom part of the valid picture. */
-static inline void open_rows(sm_picture *picture, int32_t top, int32_t bottom) {
-    size_t bytes = 8 * (size_t)picture->words;
-    char *rows = (char *)picture->rows;
-    if (picture->y0 >= picture->y1) picture->y0 = picture->y1 = top;
-    if (top < picture->y0) {
-        memset(rows + bytes * (size_t)top, 0, bytes * (size_t)(picture->y0 - top));
-        picture->y0 = top;
-    }
-    if (bottom > picture->y1) {
-        memset(rows + bytes * (size_t)picture->y1, 0, bytes * (size_t)(bottom - picture->y1));
-        picture->y1 = bottom;
+/* Makes the rows from top to bottom of the columns of words from first to last (exclusive) valid. */
+static inline void open_words(sm_picture *picture, int32_t first, int32_t last, int32_t top, int32_t bottom) {
+    for (int32_t k = first; k < last; k++) {
+        int32_t *range = picture->ranges + 2 * k;
+        uint64_t *column = picture->bits + (size_t)picture->height * (size_t)k;
+        if (range[0] >= range[1]) range[0] = range[1] = top;
+        if (top < range[0]) {
+            memset(column + top, 0, 8 * (size_t)(range[0] - top));
+            range[0] = top;
+        }
+        if (bottom > range[1]) {
+            memset(column + range[1], 0, 8 * (size_t)(bottom - range[1]));
+            range[1] = bottom;
+        }
     }
 }
 

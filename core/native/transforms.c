@@ -31,13 +31,24 @@ static void scaled_axis(double *out, const double *axis, double value) {
     for (int k = 0; k < 3; k++) out[k] = axis[k] * value;
 }
 
-void sm_pose_transforms(const sm_body *body, const double *pose, const uint8_t *needed,
-                        double *out) {
+/* Whether a joint stands as in the previous pose, its parent being unmoved. */
+static int stands(const sm_body *body, int32_t joint, const double *pose, const double *previous) {
+    for (int32_t d = body->dof_starts[joint]; d < body->dof_starts[joint + 1]; d++)
+        if (pose[d] != previous[d]) return 0;
+    return 1;
+}
+
+void sm_pose_transforms(const sm_body *body, const double *pose, const double *previous, uint8_t *moved,
+                        const uint8_t *needed, double *out) {
     static const double identity[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     for (int32_t j = 0; j < body->joints; j++) {
         if (needed && !needed[j]) continue;
         double *m = out + 12 * j, v[3];
         int32_t parent = body->parents[j];
+        if (previous) {
+            moved[j] = (parent >= 0 && moved[parent]) || !stands(body, j, pose, previous);
+            if (!moved[j]) continue;
+        }
         memcpy(m, parent < 0 ? identity : out + 12 * parent, sizeof identity);
         translate(m, body->offsets + 3 * j);
         for (int32_t d = body->dof_starts[j]; d < body->dof_starts[j + 1]; d++) {

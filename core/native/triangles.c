@@ -42,7 +42,7 @@ static void fill_triangle(const int32_t *x, const int32_t *y, sm_picture *pictur
     low = clamped(first_row(y[2] < low ? y[2] : low), picture->top, picture->bottom);
     high = clamped(first_row(y[2] > high ? y[2] : high), picture->top, picture->bottom);
     if (area == 0 || low >= high) return;
-    open_rows(picture, low, high);
+    open_words(picture, 0, picture->words, low, high);
     for (int32_t row = low; row < high; row++) {
         int32_t ends[2], n = 0;
         for (int i = 0; i < 3; i++) {
@@ -52,7 +52,7 @@ static void fill_triangle(const int32_t *x, const int32_t *y, sm_picture *pictur
             ends[n++] = crossing(x[a], y[a], x[b], y[b], row, picture->width);
         }
         int32_t left = ends[0] < ends[1] ? ends[0] : ends[1];
-        set_span(picture->rows + (size_t)picture->words * row, left, ends[0] + ends[1] - left);
+        set_span(picture, row, left, ends[0] + ends[1] - left);
     }
 }
 

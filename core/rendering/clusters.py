@@ -57,7 +57,7 @@ def clustered_mesh(vertices: np.ndarray, triangles: np.ndarray) -> ClusteredMesh
     points = vertices[triangles].astype(float).mean(axis=1).reshape(-1, 3)
     radius = np.linalg.norm(points - points.mean(axis=0), axis=1).max() if len(points) else 1.0
     features = np.concatenate([planes[:3].T, points * (PLACE_WEIGHT / max(radius, 1e-9))], axis=1)
-    order = np.concatenate([np.zeros(0, int), *_leaves(features, np.arange(len(triangles)))])
+    order = np.concatenate([np.zeros(0, int), *leaves(features, CLUSTER)])
     filled = np.concatenate([order, np.repeat(order[-1:], -len(order) % CLUSTER)])
     faces, points = planes[:, filled], points[filled]
     runs = _runs(edge_records(triangles[order]), len(order), len(filled) // CLUSTER)
@@ -91,15 +91,19 @@ def face_planes(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     return np.vstack([unit.T, (unit * p).sum(axis=1), margins])
 
 
-def _leaves(features: np.ndarray, faces: np.ndarray) -> list[np.ndarray]:
-    """Faces split in two along the direction of largest spread until sixteen are left."""
-    if len(faces) <= CLUSTER:
-        return [faces]
-    centred = features[faces] - features[faces].mean(axis=0)
+def leaves(features: np.ndarray, size: int) -> list[np.ndarray]:
+    """Indices of features (n, k), split in two along their largest spread down to ``size``."""
+    return _leaves(features, np.arange(len(features)), size)
+
+
+def _leaves(features: np.ndarray, members: np.ndarray, size: int) -> list[np.ndarray]:
+    if len(members) <= size:
+        return [members]
+    centred = features[members] - features[members].mean(axis=0)
     direction = np.linalg.eigh(centred.T @ centred)[1][:, -1]
-    faces = faces[np.argsort(centred @ direction, kind="stable")]
-    half = max(CLUSTER, CLUSTER * round(len(faces) / (2 * CLUSTER)))
-    return _leaves(features, faces[:half]) + _leaves(features, faces[half:])
+    members = members[np.argsort(centred @ direction, kind="stable")]
+    half = max(size, size * round(len(members) / (2 * size)))
+    return _leaves(features, members[:half], size) + _leaves(features, members[half:], size)
 
 
 def _runs(records: EdgeRecords, count: int, clusters: int) -> list[EdgeRecords]:
@@ -129,10 +133,19 @@ def _ring_plane(faces: np.ndarray, points: np.ndarray, cluster: int, owned: np.n
     count = faces.shape[1]
     own = np.arange(CLUSTER * cluster, CLUSTER * (cluster + 1))
     ring = np.union1d(own, owned[owned < count])
-    normals, margins = faces[:3, ring].T, faces[4:, ring].max(axis=1)
-    mean, centre = normals.mean(axis=0), points[ring].mean(axis=0)
-    apart = np.linalg.norm(normals - mean, axis=1).max()
-    along = np.abs((normals * (points[ring] - centre)).sum(axis=1)).max()
+    plane = joint_plane(faces, points, ring)
     if (owned == count).any():
-        apart = np.inf
+        plane[4] = np.inf
+    return plane
+
+
+def joint_plane(planes: np.ndarray, points: np.ndarray, chosen: np.ndarray) -> list:
+    """m, m . q, max |n - m|, max |n . (p - q)| and largest margins of the chosen faces.
+
+    ``planes`` (6, m) are those of `face_planes`, ``points`` (m, 3) the faces' middles.
+    """
+    normals, margins = planes[:3, chosen].T, planes[4:, chosen].max(axis=1)
+    mean, centre = normals.mean(axis=0), points[chosen].mean(axis=0)
+    apart = np.linalg.norm(normals - mean, axis=1).max()
+    along = np.abs((normals * (points[chosen] - centre)).sum(axis=1)).max()
     return [*mean, mean @ centre, apart * ROUND_UP, along * ROUND_UP, *margins]

@@ -9,9 +9,14 @@ from ..body.body import Body
 from ..cameras.camera import Camera
 from ..native.library import BodyRecord, ViewsRecord
 from .clusters import clustered_mesh
+from .edges import closed_edges
 
 NEAR = 0.01
 """Metres in front of a camera at which surfaces are cut off."""
+LANES = 8
+"""Views side by side in the kernel."""
+SPARE = 8
+"""Vertices that the kernel may read beyond the last one."""
 GUARD_PX = 16000.0
 """Surfaces are cut off this far from the first pixel's centre, so that 256 times fits 23 bits."""
 
@@ -45,7 +50,13 @@ def body_record(body: Body, level: int) -> BodyRecord:
         clustered_mesh(surface.vertices[v0:v1], surface.triangles[f0:f1] - v0)
         for (v0, v1), (f0, f1) in bounds
     ]
-    x, y, z = surface.vertices.T
+    bounds = zip(pairwise(surface.vertex_starts), pairwise(surface.triangle_starts), strict=True)
+    closed = [
+        closed_edges(surface.vertices[v0:v1], surface.triangles[f0:f1] - v0)
+        for (v0, v1), (f0, f1) in bounds
+    ]
+    cones = np.concatenate([edges.cones for edges in closed], axis=1)
+    x, y, z = np.pad(surface.vertices, ((0, SPARE), (0, 0))).T
     arrays = {
         "parents": body.parents,
         "offsets": body.offsets,
@@ -63,8 +74,14 @@ def body_record(body: Body, level: int) -> BodyRecord:
         "cluster_planes": np.concatenate([mesh.cluster_planes for mesh in meshes], axis=1),
         "record_vertices": np.concatenate([mesh.records.vertices for mesh in meshes]),
         "record_faces": np.concatenate([mesh.records.faces for mesh in meshes]),
+        "connected": np.array([edges.connected for edges in closed], np.uint8),
+        "edge_starts": _running([len(edges.sides) for edges in closed]),
+        "edge_cones": np.pad(cones.ravel(), (0, 2 * SPARE)),
+        "edge_sides": np.concatenate([edges.sides for edges in closed]),
+        "edge_ends": np.concatenate([edges.ends for edges in closed]),
+        "edge_corners": np.concatenate([edges.corners for edges in closed]),
     }
-    lasts = (int(arrays[f"{name}_starts"][-1]) for name in ("cluster", "run"))
+    lasts = (int(arrays[f"{name}_starts"][-1]) for name in ("cluster", "run", "edge"))
     counts = joints, len(dofs), segments, len(surface.vertices), *lasts
     return _filled(BodyRecord(*counts), arrays)
 
@@ -99,6 +116,12 @@ def optics(camera: Camera) -> np.ndarray:
     return np.array([*camera.centre, np.linalg.det(camera.matrix), scale])
 
 
+def _side_by_side(values: list[np.ndarray]) -> np.ndarray:
+    """(..., L) the views' values, filled up with those of the first one."""
+    filled = values + values[:1] * (-len(values) % LANES)
+    return np.stack(filled, axis=-1)
+
+
 def views_record(cameras: Sequence[Camera], processor: int) -> ViewsRecord:
     """The cameras as the kernel's ``sm_views``, computed by the given code path."""
     sizes = np.array([camera.size for camera in cameras], np.int32)
@@ -109,9 +132,9 @@ def views_record(cameras: Sequence[Camera], processor: int) -> ViewsRecord:
 
     arrays = {
         "sizes": sizes,
-        "projections": np.stack([camera.projection for camera in cameras]),
-        "planes": np.stack([clipping_planes(camera) for camera in cameras]),
-        "optics": np.stack([optics(camera) for camera in cameras]),
+        "projections": _side_by_side([camera.projection for camera in cameras]),
+        "planes": _side_by_side([clipping_planes(camera) for camera in cameras]),
+        "optics": _side_by_side([optics(camera) for camera in cameras]),
         "word_starts": starts(height * ((width + 63) // 64)),
         "map_starts": starts(height * width),
         "sum_starts": starts(height * (width + 1)),

@@ -95,7 +95,9 @@ class NativeEvaluator:
         pixels = np.concatenate([np.asarray(m, np.int16).ravel() for m in maps.maps])
         small = pixels.min() >= -1 and pixels.max() <= 1
         weights = self._empty_weights(PLANES if small else MAPS, maps.constants)
-        check(self._library.sm_prepare(self._refs[1], pixels.ctypes.data, byref(weights.record)))
+        column = self._column()
+        arguments = pixels.ctypes.data, byref(weights.record), column.ctypes.data
+        check(self._library.sm_prepare(self._refs[1], *arguments))
         return weights
 
     def masked(
@@ -112,6 +114,7 @@ class NativeEvaluator:
         fixed = sorted(set(range(len(self.body.segment_names))) - {int(s) for s in moving})
         covered = self._covered(pose, fixed)
         result = self._empty_weights(weights.record.kind, weights.constants)
+        column = self._column()
         if windows is not None:
             windows = np.ascontiguousarray(windows, np.int32)
             if windows.shape != (len(self.cameras), 4):
@@ -123,6 +126,7 @@ class NativeEvaluator:
                 covered.ctypes.data,
                 None if windows is None else windows.ctypes.data,
                 byref(result.record),
+                column.ctypes.data,
             )
         )
         return result
@@ -165,7 +169,8 @@ class NativeEvaluator:
         pictures = []
         for camera, begin, end in zip(self.cameras, starts[:-1], starts[1:], strict=True):
             width, height = camera.size
-            rows = words[begin:end].view(np.uint8).reshape(height, -1)
+            columns = words[begin:end].reshape(-1, height)
+            rows = np.ascontiguousarray(columns.T).view(np.uint8)
             pictures.append(np.unpackbits(rows, axis=1, count=width, bitorder="little").view(bool))
         return tuple(pictures)
 
@@ -220,6 +225,10 @@ class NativeEvaluator:
             arrays["sums"] = np.empty(starts["sum_starts"], np.int32)
         record = WeightsRecord(kind, **{name: array.ctypes.data for name, array in arrays.items()})
         return NativeWeights(arrays["constants"], arrays, record)
+
+    def _column(self) -> np.ndarray:
+        """Scratch for a column of words."""
+        return np.empty(max(camera.size[1] for camera in self.cameras), np.uint64)
 
     def _covered(self, pose: np.ndarray, segments: Sequence[int] | None) -> np.ndarray:
         """Packed rows of what the segments cover in one pose (D,) or (V, D)."""
