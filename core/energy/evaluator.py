@@ -29,6 +29,23 @@ class WeightMaps:
     constants: np.ndarray
 
 
+@dataclass(frozen=True, eq=False)
+class Outline:
+    """P points on the outline of one view.
+
+    Attributes:
+        segments: (P,) int32 the segment each lies on.
+        points: (P, 3) m, in the space of the segment's joint.
+        px: (P, 2) where it is seen.
+        normals: (P, 2) unit vectors in the image that point away from the body.
+    """
+
+    segments: np.ndarray
+    points: np.ndarray
+    px: np.ndarray
+    normals: np.ndarray
+
+
 class Weights(Protocol):
     """Weight maps in a backend's own form; made by `Evaluator.prepared` and `Evaluator.masked`."""
 
@@ -77,6 +94,15 @@ class Evaluator(Protocol[W]):
         self, pose: np.ndarray, segments: Sequence[int] | None = None
     ) -> tuple[np.ndarray, ...]:
         """V boolean pictures (H, W), True where the body covers the pixel's centre."""
+        ...
+
+    def outline(
+        self, pose: np.ndarray, segments: Sequence[int] | None = None, spacing_px: float = 1.0
+    ) -> tuple[Outline, ...]:
+        """V outlines of what the segments cover in a pose (D,) or (V, D), see `rendering.outline`.
+
+        Neighbouring points on an edge are at most ``spacing_px`` apart.
+        """
         ...
 
     def bounds(self, poses: np.ndarray, segments: Sequence[int]) -> np.ndarray:

@@ -247,3 +247,22 @@ int32_t sm_draw_contours(const sm_body *body, int32_t segment, const eye *e, con
     }
     return 1;
 }
+
+int32_t sm_find_contour(const sm_body *body, int32_t segment, const eye *e, const double *a, sm_work *work) {
+    int32_t start = body->cluster_starts[segment], n = body->cluster_starts[segment + 1] - start, drawn = 0;
+    int32_t runs = sm_glance(body->cluster_planes, (size_t)body->clusters, start, n, e, work->runs);
+    if (!runs) return 0;
+    judge(body, segment, e, work);
+    int32_t found = find_edges(body, runs, work);
+    snap_ends(body, segment, a, found, work);
+    settle(body, segment, found, e->front, work);
+    const int32_t sign_of[5] = {0, e->front, -e->front, 0, 0};
+    for (int32_t k = 0; k < found; k++) {
+        const int32_t *faces = body->record_faces + 2 * (size_t)work->found[k];
+        int32_t sum = sign_of[work->facing[faces[0]]] - sign_of[work->facing[faces[1]]];
+        work->found[drawn] = work->found[k];
+        work->unknown[drawn] = sum;
+        drawn += sum != 0;
+    }
+    return drawn;
+}

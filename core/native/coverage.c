@@ -67,8 +67,7 @@ static void look(const sm_views *views, size_t lanes, size_t view, const double 
     for (int v = 0; v < L; v++) sight->front[view + (size_t)v] = optics[3 * lanes + v] > 0.0 ? -1 : 1;
 }
 
-/* All views' sight of one segment. */
-static void see(const sm_body *body, const sm_views *views, int32_t segment, sm_work *work) {
+void sm_see(const sm_body *body, const sm_views *views, int32_t segment, sm_work *work) {
     const double *sphere = body->spheres + 4 * (size_t)segment, *transform = sm_transform(body, work, 0, segment);
     double radius = sphere[3] * (1.0 + 1e-6) + 1e-9;
     double own = sqrt(sphere[0] * sphere[0] + sphere[1] * sphere[1] + sphere[2] * sphere[2]);
@@ -91,16 +90,13 @@ static void see(const sm_body *body, const sm_views *views, int32_t segment, sm_
 
 static void draw_segment(const sm_body *body, const sm_views *views, int32_t segment, sm_work *work) {
     const sm_sight *sight = &work->sight;
-    size_t lanes = (size_t)(views->views + L - 1) / L * L;
-    see(body, views, segment, work);
+    sm_see(body, views, segment, work);
     for (int32_t view = 0; view < views->views; view++) {
         sm_picture *picture = work->pictures + view;
         if (picture->top >= picture->bottom || sight->where[view] == HIDDEN) continue;
         double a[12];
-        for (size_t k = 0; k < 12; k++) a[k] = sight->a[k * lanes + (size_t)view];
+        eye e = sm_eye(views, view, sight, a);
         if (sight->where[view] == PLAIN) {
-            eye e = {{sight->at[0][view], sight->at[1][view], sight->at[2][view]}, sight->reach[view], sight->edge[view],
-                     sight->step[view], sight->slack[view], sight->front[view]};
             if (sm_draw_closed(body, segment, &e, a, picture, work)) continue;
             if (sm_draw_contours(body, segment, &e, a, picture, work)) continue;
         }
@@ -158,9 +154,8 @@ static int32_t snap_checked(const sm_body *body, const sm_views *views, int32_t 
                             sm_work *work) {
     double a[12], h[3];
     int32_t start = body->vertex_starts[segment], n = body->vertex_starts[segment + 1] - start, clean = 1;
-    size_t lanes = (size_t)(views->views + L - 1) / L * L;
-    see(body, views, segment, work);
-    for (size_t k = 0; k < 12; k++) a[k] = work->sight.a[k * lanes + (size_t)view];
+    sm_see(body, views, segment, work);
+    sm_eye(views, view, &work->sight, a);
     for (int32_t i = 0; i < n; i++) {
         homogeneous(body, a, start + i, h);
         int32_t kept = is_inside(h, views->near);
@@ -172,4 +167,4 @@ static int32_t snap_checked(const sm_body *body, const sm_views *views, int32_t 
     return clean;
 }
 
-const sm_path PATH(sm_path_) = {draw, sum, snap_checked};
+const sm_path PATH(sm_path_) = {draw, sum, snap_checked, sm_outlines};

@@ -93,6 +93,9 @@ typedef struct {
     /* Snaps the vertices of one segment into work->qx, qy; returns whether all are in the guard
        region (those that are not come out as INT32_MIN). */
     int32_t (*snap)(const sm_body *, const sm_views *, int32_t view, int32_t segment, sm_work *);
+    /* Points on the outline of what has been drawn. */
+    void (*outlines)(const sm_body *, const sm_views *, const int32_t *segments, int32_t count, double spacing,
+                     sm_points *, sm_work *);
 } sm_path;
 
 extern const sm_path sm_path_base, sm_path_v3, sm_path_v4;

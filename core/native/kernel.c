@@ -276,6 +276,18 @@ int32_t sm_silhouettes(const sm_body *body, const sm_views *views, const double 
     return SM_OK;
 }
 
+int32_t sm_outline(const sm_body *body, const sm_views *views, const double *pose, int32_t per_view,
+                   const int32_t *segments, int32_t count, double spacing, sm_points *out, void *scratch, size_t bytes) {
+    sm_work work;
+    int32_t error = begin(body, views, 1, segments, count, scratch, bytes, &work);
+    if (error) return error;
+    if (!(spacing >= 1.0 / 256.0) || out->room < 0) return SM_SIZE;
+    take_pose(body, views, pose, per_view, 0, &work);
+    path_of(views)->draw(body, views, segments, count, &work);
+    path_of(views)->outlines(body, views, segments, count, spacing, out, &work);
+    return SM_OK;
+}
+
 /* Grows a box of snapped coordinates by the vertices of one segment. */
 static void grow(const sm_work *work, int32_t n, int32_t *box) {
     for (int32_t i = 0; i < n; i++) {

@@ -23,7 +23,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define SM_ABI 3
+#define SM_ABI 4
 #define SM_CLUSTER 16 /* faces to a cluster */
 #define SM_RUN 8      /* the records of a cluster are filled up to a multiple */
 #define SM_LANES 8     /* views side by side */
@@ -106,6 +106,16 @@ typedef struct {
     int32_t *rows;      /* (V, 2) first and last row + 1 that hold a weight; set by the kernel */
 } sm_weights;
 
+/* Room for points on outlines. */
+typedef struct {
+    int64_t room;      /* for so many */
+    int64_t *starts;   /* (V + 1) where each view's begin; beyond `room` where it was too small */
+    int32_t *segments; /* (room) */
+    double *points;    /* (room, 3) m, in the space of the segment's joint */
+    double *px;        /* (room, 2) */
+    double *normals;   /* (room, 2) away from the body */
+} sm_points;
+
 SM_API int32_t sm_abi(void);           /* SM_ABI; checked at load */
 SM_API const char *sm_sources(void);   /* fingerprint of the sources; a stale library is refused */
 SM_API int32_t sm_processor(void);     /* best code path here: 1 any, 3 x86-64-v3, 4 x86-64-v4 */
@@ -139,6 +149,13 @@ SM_API int32_t sm_energies(const sm_body *, const sm_views *, const sm_weights *
 SM_API int32_t sm_silhouettes(const sm_body *, const sm_views *, const double *pose,
                               int32_t per_view, const int32_t *segments, int32_t count,
                               uint64_t *out, void *scratch, size_t bytes);
+
+/* Points on the outlines of what segments cover in one pose, at most `spacing` px apart on an edge: those
+ * of edges between fronts and backs, and of borders, beside which a pixel is not covered. A segment
+ * that leaves the guard region of a view, or comes too near, has none there. */
+SM_API int32_t sm_outline(const sm_body *, const sm_views *, const double *pose, int32_t per_view,
+                          const int32_t *segments, int32_t count, double spacing, sm_points *out, void *scratch,
+                          size_t bytes);
 
 /* Boxes (n, V, 4), x0, y0, x1, y1 (exclusive) px, unclipped by the picture, round all that the
  * segments can cover; the whole guard region where a segment leaves it or comes too near. */

@@ -12,7 +12,7 @@ from pathlib import Path
 from ..errors import MocapError
 from .build import fingerprint, host_target, library_name
 
-ABI = 3
+ABI = 4
 PLANES, MAPS = 0, 1
 FOLDER = Path(__file__).resolve().parent
 BUILD = f'build it: python -m pip install ziglang, then python "{FOLDER / "build.py"}"'
@@ -61,10 +61,21 @@ class WeightsRecord(ctypes.Structure):
     )
 
 
+class PointsRecord(ctypes.Structure):
+    """``sm_points`` of kernel.h."""
+
+    _fields_ = (
+        ("room", c_int64),
+        *((name, c_void_p) for name in ("starts", "segments", "points", "px", "normals")),
+    )
+
+
 def _declare(library: ctypes.CDLL) -> None:
     body, views, weights = POINTER(BodyRecord), POINTER(ViewsRecord), POINTER(WeightsRecord)
+    points = POINTER(PointsRecord)
     pointer, scratch = c_void_p, (c_void_p, c_size_t)
     poses, segments = (c_void_p, c_int64, c_int32), (c_void_p, c_int32)
+    outline = (pointer, c_int32, *segments, c_double, points)
     signatures = {
         "sm_abi": (c_int32, ()),
         "sm_sources": (ctypes.c_char_p, ()),
@@ -76,6 +87,7 @@ def _declare(library: ctypes.CDLL) -> None:
         "sm_mask": (c_int32, (views, weights, pointer, pointer, weights, pointer)),
         "sm_energies": (c_int32, (body, views, weights, *poses, *segments, pointer, *scratch)),
         "sm_silhouettes": (c_int32, (body, views, pointer, c_int32, *segments, pointer, *scratch)),
+        "sm_outline": (c_int32, (body, views, *outline, *scratch)),
         "sm_bounds": (c_int32, (body, views, *poses, *segments, pointer, *scratch)),
         "sm_snapped": (c_int32, (body, views, pointer, pointer, *scratch)),
     }  # fmt: skip

@@ -13,6 +13,9 @@
 #define sm_draw_triangles PATH(sm_draw_triangles_)
 #define sm_draw_closed PATH(sm_draw_closed_)
 #define sm_glance PATH(sm_glance_)
+#define sm_see PATH(sm_see_)
+#define sm_find_contour PATH(sm_find_contour_)
+#define sm_outlines PATH(sm_outlines_)
 
 /* One of the views of sm_sight. */
 typedef struct {
@@ -31,6 +34,26 @@ int32_t sm_draw_closed(const sm_body *, int32_t segment, const eye *, const doub
 /* The clusters from `start` on, of n, whose faces are not all known to look the same way, go into
  * `wanted`; returns their number. `planes` (8, stride) are those of sm_body. */
 int32_t sm_glance(const float *planes, size_t stride, int32_t start, int32_t n, const eye *, int32_t *wanted);
+
+/* Fills work->sight with what all views see of a segment. */
+void sm_see(const sm_body *, const sm_views *, int32_t segment, sm_work *);
+
+/* The part of work->sight that one view has; `a` (12) carries joint's metres to homogeneous px. */
+static inline eye sm_eye(const sm_views *views, int32_t view, const sm_sight *sight, double *a) {
+    size_t lanes = (size_t)(views->views + SM_LANES - 1) / SM_LANES * SM_LANES, v = (size_t)view;
+    for (size_t k = 0; k < 12; k++) a[k] = sight->a[k * lanes + v];
+    return (eye){{sight->at[0][v], sight->at[1][v], sight->at[2][v]}, sight->reach[v], sight->edge[v],
+                 sight->step[v], sight->slack[v], sight->front[v]};
+}
+
+/* Edges of a segment that lies in the guard region where the signed sum of the triangles on both
+ * sides, in work->unknown, is not 0: records in work->found; returns their number. Both ends lie at
+ * work->places in work->qx and qy. */
+int32_t sm_find_contour(const sm_body *, int32_t segment, const eye *, const double *a, sm_work *);
+
+/* Points on the outline of what has been drawn. */
+void sm_outlines(const sm_body *, const sm_views *, const int32_t *segments, int32_t count, double spacing,
+                 sm_points *out, sm_work *);
 
 /* Draws any segment, every triangle on its own, clipped: slow, the same picture, no conditions. */
 void sm_draw_triangles(const sm_body *, double near, int32_t segment, const double *a, sm_picture *);

@@ -8,14 +8,18 @@ from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from ctypes import byref
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
 from ..body.body import Body
 from ..cameras.camera import Camera
-from ..energy.evaluator import WeightMaps
-from ..native.library import MAPS, PLANES, WeightsRecord, check, load
+from ..energy.evaluator import Outline, WeightMaps
+from ..native.library import MAPS, PLANES, PointsRecord, WeightsRecord, check, load
 from .model import body_record, views_record
+
+OUTLINE_ROOM = 2000
+"""Points of an outline to begin with, per view."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -173,6 +177,32 @@ class NativeEvaluator:
             rows = np.ascontiguousarray(columns.T).view(np.uint8)
             pictures.append(np.unpackbits(rows, axis=1, count=width, bitorder="little").view(bool))
         return tuple(pictures)
+
+    def outline(
+        self, pose: np.ndarray, segments: Sequence[int] | None = None, spacing_px: float = 1.0
+    ) -> tuple[Outline, ...]:
+        """V outlines of what the segments cover, in steps of at most ``spacing_px``."""
+        poses, per_view = self._checked(np.asarray(pose)[None])
+        chosen, room = self._chosen(segments), OUTLINE_ROOM * len(self.cameras)
+        arguments = poses.ctypes.data, per_view, chosen.address, chosen.length, spacing_px
+        while True:
+            arrays = {
+                "starts": np.empty(len(self.cameras) + 1, np.int64),
+                "segments": np.empty(room, np.int32),
+                "points": np.empty((room, 3)),
+                "px": np.empty((room, 2)),
+                "normals": np.empty((room, 2)),
+            }
+            record = PointsRecord(room, *(array.ctypes.data for array in arrays.values()))
+            self._run(self._library.sm_outline, *arguments, byref(record))
+            starts = arrays.pop("starts")
+            if starts[-1] <= room:
+                break
+            room = int(starts[-1])
+        return tuple(
+            Outline(**{name: array[begin:end] for name, array in arrays.items()})
+            for begin, end in pairwise(starts.tolist())
+        )
 
     def bounds(self, poses: np.ndarray, segments: Sequence[int]) -> np.ndarray:
         """(N, V, 4) int: x0, y0, x1, y1 (exclusive), px that the segments can cover, unclipped.

@@ -13,8 +13,10 @@ import numpy as np
 from ..body.body import Body
 from ..body.kinematics import joint_transforms
 from ..cameras.camera import Camera
-from ..energy.evaluator import WeightMaps
-from .model import GUARD_PX, NEAR
+from ..energy.evaluator import Outline, WeightMaps
+from .model import GUARD_PX
+from .outline import find_outlines
+from .snapping import homogeneous_px, plane_distances, snapped_px
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,30 +30,6 @@ class ReferenceWeights:
 
     maps: tuple[np.ndarray, ...]
     constants: np.ndarray
-
-
-def homogeneous_px(projection: np.ndarray, transform: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """(n, 3) homogeneous px of points (n, 3) given in a joint's space.
-
-    Products and sums are taken one by one in the kernel's order, so that the bits are the same.
-    """
-    p, m = projection, transform
-    a = p[:, 0, None] * m[0] + p[:, 1, None] * m[1] + p[:, 2, None] * m[2]
-    a[:, 3] += p[:, 3]
-    x, y, z = np.asarray(points, float).T[:, :, None]
-    return a[:, 0] * x + a[:, 1] * y + a[:, 2] * z + a[:, 3]
-
-
-def snapped_px(h: np.ndarray) -> np.ndarray:
-    """(n, 2) int64 coordinates in 1/256 px of homogeneous points (n, 3)."""
-    return np.rint(h[:, :2] * (1.0 / h[:, 2:]) * 256.0).astype(np.int64)
-
-
-def plane_distances(h: np.ndarray) -> np.ndarray:
-    """(n, 5) signed distances to the near plane and the guard region's sides, positive inside."""
-    x, y, depth = h.T
-    sides = GUARD_PX * depth + x, GUARD_PX * depth - x, GUARD_PX * depth + y, GUARD_PX * depth - y
-    return np.stack([depth - NEAR, *sides], axis=1)
 
 
 def clipped_polygon(corners: np.ndarray) -> np.ndarray:
@@ -166,6 +144,15 @@ class ReferenceEvaluator:
                 picture[rows, columns] |= covered
             pictures.append(picture)
         return tuple(pictures)
+
+    def outline(
+        self, pose: np.ndarray, segments: Sequence[int] | None = None, spacing_px: float = 1.0
+    ) -> tuple[Outline, ...]:
+        """V outlines of what the segments cover, in steps of at most ``spacing_px``."""
+        chosen = range(len(self.body.segment_names)) if segments is None else segments
+        pictures = self.silhouettes(pose, chosen)
+        views = self.body, self.level, self.cameras
+        return find_outlines(*views, pose, pictures, chosen, spacing_px)
 
     def bounds(self, poses: np.ndarray, segments: Sequence[int]) -> np.ndarray:
         """(N, V, 4) int: x0, y0, x1, y1 (exclusive), px that the segments can cover, unclipped.

@@ -7,7 +7,8 @@ import numpy as np
 
 from ...body.body import Body
 from ...cameras.camera import Camera
-from ...energy.evaluator import WeightMaps
+from ...energy.evaluator import Outline, WeightMaps
+from ..outline import find_outlines
 from .canvas import DeviceMesh, Range, drawing_range
 from .context import GlThread, no_opengl, shared_thread
 from .meshes import segment_mesh
@@ -108,6 +109,14 @@ class OpenGLBase:
         pose = self._checked(np.asarray(pose, float)[None])
         chosen = self._chosen(segments)
         return self.thread.call(self._draw_silhouettes, pose, chosen)
+
+    def outline(
+        self, pose: np.ndarray, segments: Sequence[int] | None = None, spacing_px: float = 1.0
+    ) -> tuple[Outline, ...]:
+        """V outlines of what the segments cover, in steps of at most ``spacing_px``."""
+        pictures = self.silhouettes(pose, segments)
+        views = self.body, self.level, self.cameras
+        return find_outlines(*views, pose, pictures, self._chosen(segments), spacing_px)
 
     def _draw_silhouettes(
         self, pose: np.ndarray, segments: tuple[int, ...]

@@ -74,6 +74,65 @@ def test_pieces_of_one_segment_need_not_hang_together(scenes, teeth):
     check_equal(scenes, [comb(teeth)], cameras, teeth)
 
 
+def box(size, centre):
+    """A closed box of eight vertices."""
+    corners = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], float)
+    quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    faces = [t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))]
+    return corners * np.array(size) / 2 + centre, np.array(faces)
+
+
+def joined(one, two):
+    """Two closed surfaces as one, hung together by a tube far thinner than a step of the image."""
+    vertices = np.concatenate([one[0], two[0]])
+    triangles = [*one[1].tolist(), *(two[1] + len(one[0])).tolist()]
+    holes = [triangles.pop(len(one[1])), triangles.pop(0)][::-1]
+    rings = []
+    for hole in holes:
+        middle = vertices[hole].mean(axis=0)
+        ring = len(vertices) + np.arange(3)
+        vertices = np.concatenate([vertices, middle + 1e-9 * (vertices[hole] - middle)])
+        triangles += _band(hole, ring)
+        rings.append(ring)
+    return vertices, np.array(triangles + _band(rings[0], rings[1][[0, 2, 1]]))
+
+
+def _band(outer, inner):
+    """Six triangles between two rings of three."""
+    pairs = [(k, (k + 1) % 3) for k in range(3)]
+    return [t for k, m in pairs for t in (
+        (outer[k], outer[m], inner[k]), (outer[m], inner[m], inner[k])
+    )]  # fmt: skip
+
+
+@pytest.mark.parametrize("join", [False, True])
+def test_rows_that_nothing_crosses_make_up_for_no_row_that_is_crossed_too_often(scenes, join):
+    # on a star that some rows cross ten times hangs, far below, a box: the rows between them,
+    # empty or crossed by faces without area alone, must not count as crossed twice
+    high, low = star(9, 0.8), box((0.1, 0.1, 0.1), (0.2, -2.2, 0))
+    vertices = np.concatenate([high[0], low[0]])
+    apart = vertices, np.concatenate([high[1], low[1] + len(high[0])])
+    cameras = [above(4.0, 200, (60, 300))]
+    check_equal(scenes, [joined(high, low) if join else apart], cameras, 9, spread=0.01)
+
+
+def test_edges_through_the_centres_of_pixels_leave_them_to_the_right_hand_side(scenes):
+    ring = [(0.5, 0, 0), (0, 0.5, 0), (-0.5, 0, 0), (0, -0.5, 0)]
+    vertices = np.array([*ring, (0, 0, -0.3), (0, 0, 0.3)])
+    triangles = [(k, (k + 1) % 4, 5) for k in range(4)] + [((k + 1) % 4, k, 4) for k in range(4)]
+    cameras = [above(2.0, focal, (64, 64)) for focal in (64, 32, 96)]
+    body = scenes.body_of([(vertices, np.array(triangles))], np.random.default_rng(0))
+    shift = np.zeros(len(body.dofs))
+    shift[:3] = -body.offsets[0]
+    reference = ReferenceEvaluator(body, cameras)
+    for path in PATHS:
+        native = NativeEvaluator(body, cameras, processor=path)
+        for ours, theirs in zip(
+            native.silhouettes(shift), reference.silhouettes(shift), strict=True
+        ):
+            np.testing.assert_array_equal(ours, theirs)
+
+
 @pytest.mark.parametrize("distance", [3.0, 12.0, 60.0, 400.0])
 def test_faces_down_to_a_fraction_of_a_step_are_exact(scenes, distance):
     rng = np.random.default_rng(2)

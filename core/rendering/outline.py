@@ -1,0 +1,125 @@
+"""Points on the outline of the rendered silhouettes, each with its place on the body's surface.
+
+The outline is made of edges between a triangle that shows its front and one that shows its back,
+and of borders. Sampled in even steps along the image, a point of such an edge lies on the outline
+where the pixel beside it, on the far side from the triangle, is not covered. What was snapped to
+1/256 px for the picture decides here as well, so that all backends find the same edges.
+
+Contour fitting moves these points towards the observed contour; since each is fixed to a joint, the
+derivative of its image is that of the skeleton (Rosenhahn et al., IJCV 73, 2007, section 3).
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from itertools import pairwise
+
+import numpy as np
+
+from ..body.body import Body, Surface
+from ..body.kinematics import joint_transforms
+from ..cameras.camera import Camera
+from ..energy.evaluator import Outline
+from .model import clipping_planes, enclosing_spheres
+from .records import EdgeRecords, edge_records
+from .snapping import homogeneous_px, snapped_px
+
+BESIDE_PX = 0.75
+"""Just over half a pixel's diagonal: the pixel's centre there lies beyond a straight edge."""
+NOWHERE = Outline(np.zeros(0, np.int32), np.zeros((0, 3)), np.zeros((0, 2)), np.zeros((0, 2)))
+
+
+def find_outlines(
+    body: Body,
+    level: int,
+    cameras: Sequence[Camera],
+    pose: np.ndarray,
+    pictures: Sequence[np.ndarray],
+    segments: Sequence[int],
+    spacing_px: float,
+) -> tuple[Outline, ...]:
+    """V outlines of the segments in a pose (D,) or (V, D), given what they cover.
+
+    A segment that a camera sees from too near, or far outside its picture, has no points there.
+    """
+    pose = np.asarray(pose, float)
+    transforms = joint_transforms(body, np.atleast_2d(pose))
+    outlines = []
+    for view, (camera, picture) in enumerate(zip(cameras, pictures, strict=True)):
+        placed = transforms[view if pose.ndim == 2 else 0]
+        parts = [_samples(body, level, camera, placed, s, spacing_px) for s in segments]
+        outlines.append(_kept(parts, picture))
+    return tuple(outlines)
+
+
+@dataclass(frozen=True, eq=False)
+class _Mesh:
+    """One segment: vertices, triangles counted from its first vertex, edge records, sphere."""
+
+    vertices: np.ndarray
+    triangles: np.ndarray
+    records: EdgeRecords
+    sphere: np.ndarray
+
+    def is_wholly_seen(self, camera: Camera, placed: np.ndarray) -> bool:
+        """Whether the sphere round it lies in the region that can be drawn."""
+        centre = placed @ [*self.sphere[:3], 1.0]
+        distances = clipping_planes(camera)[:5] @ [*centre, 1.0]
+        return bool((distances > self.sphere[3] * (1 + 1e-6) + 1e-9).all())
+
+
+@lru_cache(maxsize=8)
+def _meshes(surface: Surface) -> tuple[_Mesh, ...]:
+    spheres = enclosing_spheres(surface.vertices, surface.vertex_starts)
+    starts = pairwise(surface.vertex_starts), pairwise(surface.triangle_starts)
+    meshes = []
+    for (v0, v1), (f0, f1), sphere in zip(*starts, spheres, strict=True):
+        triangles = surface.triangles[f0:f1] - v0
+        vertices = surface.vertices[v0:v1].astype(float)
+        meshes.append(_Mesh(vertices, triangles, edge_records(triangles), sphere))
+    return tuple(meshes)
+
+
+def _samples(
+    body: Body, level: int, camera: Camera, placed: np.ndarray, segment: int, spacing_px: float
+) -> Outline:
+    """All samples of a segment's contour edges, hidden ones too."""
+    mesh, transform = _meshes(body.surfaces[level])[segment], placed[body.segment_joints[segment]]
+    if not len(mesh.triangles) or not mesh.is_wholly_seen(camera, transform):
+        return NOWHERE
+    vertices, triangles, records = mesh.vertices, mesh.triangles, mesh.records
+    h = homogeneous_px(camera.projection, transform, vertices)
+    snapped = snapped_px(h)
+    a, b, c = (snapped[triangles[:, k]] for k in range(3))
+    areas = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
+    signs = np.append(np.sign(areas), 0)
+    sums = signs[records.faces[:, 0]] - signs[records.faces[:, 1]]
+    p, q = records.vertices[sums != 0].T
+    steps = (snapped[q] - snapped[p]) / 256.0
+    lengths = np.hypot(*steps.T)
+    counts = np.ceil(lengths / spacing_px).astype(int)
+    edge = np.repeat(np.arange(len(p)), counts)
+    t = (np.arange(len(edge)) - np.repeat(np.cumsum(counts) - counts, counts) + 0.5) / counts[edge]
+    p, q, steps, t = p[edge], q[edge], steps[edge], t[:, None]
+    ahead = (t / h[q, 2:]) / ((1 - t) / h[p, 2:] + t / h[q, 2:])
+    turned = np.stack([steps[:, 1], -steps[:, 0]], axis=1) / lengths[edge, None]
+    return Outline(
+        np.full(len(edge), segment, np.int32),
+        vertices[p] + ahead * (vertices[q] - vertices[p]),
+        snapped[p] / 256.0 + t * steps,
+        turned * np.sign(sums[sums != 0])[edge, None],
+    )
+
+
+def _kept(parts: Sequence[Outline], picture: np.ndarray) -> Outline:
+    """The samples beside which the picture is empty, all parts in one."""
+    parts = [NOWHERE, *parts]
+    joined = {
+        name: np.concatenate([getattr(part, name) for part in parts])
+        for name in ("segments", "points", "px", "normals")
+    }
+    beside = np.floor(joined["px"] + BESIDE_PX * joined["normals"] + 0.5).astype(int)
+    inside = ((beside >= 0) & (beside < picture.shape[::-1])).all(axis=1)
+    x, y = np.where(inside[:, None], beside, 0).T
+    kept = inside & ~picture[y, x]
+    return Outline(**{name: array[kept] for name, array in joined.items()})
