@@ -8,7 +8,7 @@ MOCAP := .venv/bin/silhouette-mocap
 KERNEL := $(wildcard core/native/build.py core/native/*.c core/native/*.h)
 CORE_TESTS := tests/core tests/test_layers.py
 
-.PHONY: help env demo demo-real test lint test-core test-command test-addon bench speed fuzz long-take blender clean
+.PHONY: help env demo demo-real test lint test-core test-command test-addon bench speed fuzz fuzz-kernel long-take blender clean
 
 help: ## This list
 	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /make \1\t/' | expand -t 18
@@ -65,6 +65,10 @@ speed: ## Put what make bench measured into the README
 
 fuzz: .venv/.ready ## 10,000 damaged takes, calibrations and masks through a real command
 	@cd tests && ../.venv/bin/python -m benchmarks.fuzz --cases 10000
+
+seconds ?= 60
+fuzz-kernel: .venv/.ready ## The kernel under sanitizers on scenes made of bytes; seconds=3600 for an hour (gcc)
+	@cd tests && ../.venv/bin/python -m benchmarks.fuzz_kernel --seconds $(seconds)
 
 long-take: .venv/.ready ## Memory and disk over a fit of 10,000 frames
 	@mkdir -p out && cd tests && ../.venv/bin/python -m benchmarks.long_take --every 1000 --svg ../out/long_take.svg

@@ -110,6 +110,7 @@ static void settle(const sm_body *body, int32_t segment, int32_t found, int32_t 
     for (int32_t u = 0; u < n; u++) {
         const int32_t *face = corners + 3 * (size_t)work->unknown[u];
         int32_t i = places[face[0]], j = places[face[1]], k = places[face[2]];
+        if ((i | j | k) < 0) continue; /* planes that contradict each other: no body of ours */
         int64_t area = (int64_t)(qx[j] - qx[i]) * (qy[k] - qy[i]) - (int64_t)(qx[k] - qx[i]) * (qy[j] - qy[i]);
         area *= front;
         work->facing[work->unknown[u]] = (uint8_t)(area > 0 ? FRONT : area < 0 ? BACK : FLAT);

@@ -30,8 +30,11 @@ static void locate(const sm_views *views, size_t lanes, size_t view, const doubl
             if (k < 5) guard[v] = d < guard[v] ? d : guard[v];
         }
     }
-    for (int v = 0; v < L; v++)
-        sight->where[view + (size_t)v] = picture[v] < -radius ? HIDDEN : guard[v] > radius ? PLAIN : CLIPPED;
+    for (int v = 0; v < L; v++) {
+        /* so far from the origin that it is rounded away, or nowhere at all, nothing is plain */
+        double doubt = 1e-12 * (fabs(centre[0][v]) + fabs(centre[1][v]) + fabs(centre[2][v]));
+        sight->where[view + (size_t)v] = picture[v] < -radius ? HIDDEN : guard[v] > radius + doubt ? PLAIN : CLIPPED;
+    }
 }
 
 /* What is needed to judge faces by their planes; see contours.c. */

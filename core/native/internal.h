@@ -56,7 +56,7 @@ typedef struct {
 
     int32_t *runs;      /* clusters whose records are to be looked at */
     int32_t *found;     /* edge records that may be drawn */
-    int32_t *unknown;   /* faces whose snapped area decides */
+    int32_t *unknown;   /* faces whose snapped area decides; signed sums of the records found */
     int32_t *places;    /* of the vertices of one segment in the next three, or -1 */
     int32_t *wanted;    /* vertices */
     int32_t *qx, *qy;   /* and where they are snapped to */

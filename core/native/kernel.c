@@ -42,10 +42,25 @@ static int64_t most_records(const sm_body *body) {
     return most;
 }
 
+/* Under AddressSanitizer, which knows the scratch as one block, a red zone lies behind every part. */
+#if defined(__SANITIZE_ADDRESS__)
+#include <sanitizer/asan_interface.h>
+enum { RED_ZONE = 64 };
+static void guard(char *start, size_t used, size_t end) {
+    __asan_unpoison_memory_region(start, used);
+    __asan_poison_memory_region(start + used, end - used);
+}
+#else
+enum { RED_ZONE = 0 };
+static void guard(char *start, size_t used, size_t end) { (void)start, (void)used, (void)end; }
+#endif
+
 static void *part(void *base, size_t *at, int64_t count, size_t size) {
-    size_t start = *at;
-    *at = (start + (size_t)count * size + 63) & ~(size_t)63;
-    return (void *)((((uintptr_t)base + 63) & ~(uintptr_t)63) + start);
+    size_t start = *at, used = (size_t)count * size;
+    char *place = (char *)(((uintptr_t)base + 63) & ~(uintptr_t)63) + start;
+    *at = (start + used + RED_ZONE + 63) & ~(size_t)63;
+    if (base) guard(place, used, *at - start);
+    return place;
 }
 
 static void cut_sight(void *base, size_t *at, int64_t lanes, sm_sight *sight) {
@@ -56,8 +71,14 @@ static void cut_sight(void *base, size_t *at, int64_t lanes, sm_sight *sight) {
     sight->front = part(base, at, lanes, sizeof(int32_t));
 }
 
-/* Returns the bytes from planes[0] on that must be 0. */
-static size_t cut_edges(void *base, size_t *at, int64_t clusters, int64_t height, int64_t words, sm_edges *e) {
+/* A part of words that are all 0. */
+static uint64_t *blank(void *base, size_t *at, int64_t count) {
+    uint64_t *words = part(base, at, count, sizeof(uint64_t));
+    if (base) memset(words, 0, 8 * (size_t)count);
+    return words;
+}
+
+static void cut_edges(void *base, size_t *at, int64_t clusters, int64_t height, int64_t words, sm_edges *e) {
     int64_t most = 8 * SM_CLUSTER * (clusters + 1) + 4 * height, rows = (height + 15) & ~7;
     e->rows = (size_t)rows;
     e->most = (size_t)most;
@@ -69,10 +90,8 @@ static size_t cut_edges(void *base, size_t *at, int64_t clusters, int64_t height
     e->at = part(base, at, most, sizeof(uint64_t));
     e->slope = part(base, at, most, sizeof(uint64_t));
     e->minus = part(base, at, most, sizeof(uint64_t));
-    size_t begin = *at;
-    for (int i = 0; i < 3; i++) e->planes[i] = part(base, at, rows * words, sizeof(uint64_t));
-    e->counts = part(base, at, rows, sizeof(uint64_t));
-    return *at - begin;
+    for (int i = 0; i < 3; i++) e->planes[i] = blank(base, at, rows * words);
+    e->counts = blank(base, at, rows);
 }
 
 static void clear_picture(sm_picture *picture) { memset(picture->ranges, 0, 8 * (size_t)picture->words); }
@@ -94,7 +113,7 @@ size_t sm_cut(const sm_body *body, const sm_views *views, void *base, sm_work *w
     int64_t edge_clusters = largest(body->edge_starts, body->segments);
     work->runs = part(base, &at, (clusters > edge_clusters ? clusters : edge_clusters) + 1, sizeof(int32_t));
     work->found = part(base, &at, records + 1, sizeof(int32_t));
-    work->unknown = part(base, &at, faces + 1, sizeof(int32_t));
+    work->unknown = part(base, &at, (faces > records ? faces : records) + 1, sizeof(int32_t));
     work->places = part(base, &at, vertices, sizeof(int32_t));
     work->wanted = part(base, &at, vertices + 1, sizeof(int32_t));
     work->qx = part(base, &at, vertices, sizeof(int32_t));
@@ -102,14 +121,13 @@ size_t sm_cut(const sm_body *body, const sm_views *views, void *base, sm_work *w
     work->points = part(base, &at, vertices + 8, sizeof(int64_t));
     work->counts = part(base, &at, height, 1);
     work->slots = part(base, &at, height * SM_SLOTS, sizeof(int32_t));
-    size_t cleared = cut_edges(base, &at, edge_clusters, height, most_words, &work->edges);
+    cut_edges(base, &at, edge_clusters, height, most_words, &work->edges);
     cut_sight(base, &at, (views->views + SM_LANES - 1) / SM_LANES * SM_LANES, &work->sight);
     work->pictures = part(base, &at, views->views, sizeof(sm_picture));
     int32_t *ranges = part(base, &at, 2 * most_words * views->views, sizeof(int32_t));
     uint64_t *bits = part(base, &at, views->word_starts[views->views] + 8, sizeof(uint64_t));
     if (!base) return at + 64;
     memset(work->counts, 0, (size_t)height);
-    memset(work->edges.planes[0], 0, cleared);
     for (int32_t v = 0; v < views->views; v++, ranges += 2 * most_words) {
         int32_t width = views->sizes[2 * v], rows = views->sizes[2 * v + 1];
         work->pictures[v] = (sm_picture){width, rows, (width + 63) >> 6, 0, rows, ranges, bits + views->word_starts[v]};
@@ -199,6 +217,7 @@ static int32_t check_mesh(const sm_body *body) {
 
 static int32_t check_views(const sm_views *views) {
     if (views->views < 1 || !(views->near > 0.0)) return SM_SIZE;
+    if (views->word_starts[0] || views->map_starts[0] || views->sum_starts[0]) return SM_SIZE;
     for (int32_t v = 0; v < views->views; v++) {
         int64_t width = views->sizes[2 * v], height = views->sizes[2 * v + 1];
         if (width < 1 || height < 1 || width > 32767 || height > 32767) return SM_SIZE;

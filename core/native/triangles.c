@@ -1,6 +1,8 @@
 /* Segments that leave the guard region, or overlap themselves too often for the contours' slots. */
 #include "path.h"
 
+#include <math.h>
+
 enum { MOST_CORNERS = 24 }; /* of a clipped triangle: half as many again with each of five planes */
 
 /* Sutherland-Hodgman; cuts are computed from the inner point outwards, so that neighbours agree. */
@@ -23,6 +25,9 @@ static int clip(double (*polygon)[3], int n, double near) {
     }
     return n;
 }
+
+/* What is cut off so far away that the cut is rounded to anywhere must not overflow. */
+static double bounded(double px) { return fmin(fmax(px, -2.0 * SM_GUARD_PX), 2.0 * SM_GUARD_PX); }
 
 static int64_t ceil_divided(int64_t a, int64_t b) { return a / b + (a % b > 0); } /* b > 0 */
 
@@ -71,8 +76,8 @@ void sm_draw_triangles(const sm_body *body, double near, int32_t segment, const 
         int32_t x[MOST_CORNERS], y[MOST_CORNERS];
         for (int i = 0; i < n; i++) {
             double w = 1.0 / polygon[i][2];
-            x[i] = snap(polygon[i][0] * w);
-            y[i] = snap(polygon[i][1] * w);
+            x[i] = snap(bounded(polygon[i][0] * w));
+            y[i] = snap(bounded(polygon[i][1] * w));
         }
         for (int i = 1; i + 1 < n; i++) {
             int32_t tx[3] = {x[0], x[i], x[i + 1]}, ty[3] = {y[0], y[i], y[i + 1]};
