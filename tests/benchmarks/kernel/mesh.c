@@ -8,6 +8,12 @@ static void read_vertex(reader *r, double size, float *at) {
     for (int i = 0; i < 3; i++) at[i] = (float)read_number(r, size);
 }
 
+/* Onto a grid that may fall on the centres of pixels. */
+static void round_vertices(mesh *m) {
+    for (int32_t v = 0; v < m->vertices; v++)
+        for (int i = 0; i < 3; i++) m->at[v][i] = rintf(m->at[v][i] * 32.0f) / 32.0f;
+}
+
 static void add_face(mesh *m, int32_t a, int32_t b, int32_t c) {
     if (m->faces == MOST_FACES) return;
     int32_t *corners = m->corners[m->faces++];
@@ -57,6 +63,7 @@ void read_mesh(reader *r, mesh *m) {
     m->vertices = m->faces = 0;
     if (kind & 1) read_soup(r, size, m);
     else if (kind != 2) read_ball(r, size, m);
+    if (kind & 8) round_vertices(m);
     for (uint32_t n = kind & 4 ? read_below(r, 5) : 0; n && m->faces; n--) {
         uint32_t face = (read_byte(r) << 8 | read_byte(r)) % (uint32_t)m->faces, how = read_below(r, 5);
         int32_t *c = m->corners[face], other = (int32_t)read_below(r, (uint32_t)m->vertices);

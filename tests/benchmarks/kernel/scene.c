@@ -44,13 +44,13 @@ static void read_axis(reader *r, double *axis) {
 /* Joints and degrees of freedom; the surfaces are filled in later. */
 void read_body(reader *r, scene *s) {
     enum { MOST_JOINTS = 5, MOST_DOFS = 5 * 6 };
-    int32_t joints = 1 + (int32_t)read_below(r, MOST_JOINTS), dofs = 0;
+    int32_t joints = 1 + (int32_t)read_below(r, MOST_JOINTS), dofs = 0, odd = (int32_t)read_below(r, 2);
     int32_t kinds[MOST_DOFS], *parents = new_array(s, (size_t)joints, 4), *starts = new_array(s, (size_t)joints + 1, 4);
     double *offsets = new_array(s, 3 * (size_t)joints, 8);
     for (int32_t j = 0; j < joints; j++) {
         parents[j] = (int32_t)read_below(r, (uint32_t)j + 1) - 1;
         if (j && parents[j] < 0 && read_below(r, 4)) parents[j] = j - 1;
-        for (int i = 0; i < 3; i++) offsets[3 * j + i] = read_number(r, 0.5);
+        for (int i = 0; i < 3 && odd; i++) offsets[3 * j + i] = read_number(r, 0.5);
         for (uint32_t n = read_below(r, 4); n; n--) {
             int32_t kind = (int32_t)read_below(r, 3);
             kinds[dofs++] = kind;
@@ -75,7 +75,8 @@ void read_body(reader *r, scene *s) {
 
 static void read_rotation(reader *r, double m[3][3]) {
     double q[4], n = 0.0;
-    for (int i = 0; i < 4; i++) q[i] = (int32_t)(int8_t)read_byte(r) / 32, n += q[i] * q[i];
+    int32_t turns = (int32_t)read_below(r, 2);
+    for (int i = 0; i < 4; i++) q[i] = turns * ((int32_t)(int8_t)read_byte(r) / 32), n += q[i] * q[i];
     if (n == 0.0) q[0] = n = 1.0;
     double w = q[0], x = q[1], y = q[2], z = q[3], k = 2.0 / n;
     double rows[9] = {1 - k * (y * y + z * z), k * (x * y - z * w),     k * (x * z + y * w),
@@ -95,12 +96,14 @@ static void read_size(reader *r, int32_t *size) {
 /* The clipping planes and optics are those of core/rendering/model.py. */
 static void look_from(reader *r, scene *s, int32_t view, size_t lanes, const int32_t *size, double *projections,
                       double *planes, double *optics) {
-    static const double focals[] = {8.0, 40.0, 200.0, 1500.0, 3e4, -60.0, 0.5, 1e6};
-    static const double distances[] = {2.0, 1.0, 0.0, 0.3, 8.0, 400.0, -2.0, 1e5};
-    double rotation[3][3], t[3], p[3][4], f = focals[read_below(r, 8)], g = f * (1.0 + read_number(r, 0.2));
+    static const double focals[] = {8.0, 40.0, 200.0, 1500.0, 3e4, -60.0, 0.5, 1e6, 64.0, 128.0};
+    static const double distances[] = {2.0, 1.0, 0.0, 0.3, 8.0, 400.0, -2.0, 1e5, 1e17};
+    double rotation[3][3], t[3], p[3][4], f = focals[read_below(r, 10)], odd = read_below(r, 2);
     read_rotation(r, rotation);
-    t[0] = read_number(r, 0.5), t[1] = read_number(r, 0.5), t[2] = distances[read_below(r, 8)] + read_number(r, 0.1);
-    double k[3][3] = {{f, 0, size[0] / 2.0 + read_number(r, 30)}, {0, g, size[1] / 2.0 + read_number(r, 30)}, {0, 0, 1}};
+    double g = f * (1.0 + odd * read_number(r, 0.2)), x = odd * read_number(r, 30), y = odd * read_number(r, 30);
+    t[0] = odd * read_number(r, 0.5), t[1] = odd * read_number(r, 0.5);
+    t[2] = distances[read_below(r, 9)] + odd * read_number(r, 0.1);
+    double k[3][3] = {{f, 0, size[0] / 2 + x}, {0, g, size[1] / 2 + y}, {0, 0, 1}};
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 4; j++) {
             p[i][j] = 0.0;
@@ -150,7 +153,7 @@ void read_views(reader *r, scene *s) {
  * Sizes, and vertices inside their spheres, are what a caller promises. */
 void spoil(reader *r, scene *s) {
     for (uint32_t n = 1 + read_below(r, 4); n; n--) {
-        uint32_t chosen = read_below(r, (uint32_t)s->count), kind = read_below(r, 6);
+        uint32_t chosen = read_below(r, (uint32_t)s->count), kind = read_below(r, 8);
         const void *array = s->arrays[chosen], *promised[] = {s->views.sizes, s->body.x, s->body.y, s->body.z};
         int is_promised = 0;
         for (int i = 0; i < 4; i++) is_promised |= array == promised[i];
@@ -158,6 +161,6 @@ void spoil(reader *r, scene *s) {
         uint32_t place = (read_byte(r) << 8 | read_byte(r)) % (uint32_t)s->sizes[chosen];
         static const uint32_t odd[] = {0xffffffff, 0x7fffffff, 0x80000000, 0x7fc00000, 0x7f800000};
         uint32_t *number = (uint32_t *)s->arrays[chosen] + place;
-        *number = kind < 5 ? odd[kind] : *number + (uint32_t)(int32_t)(int8_t)read_byte(r);
+        *number = kind < 5 ? odd[kind] : *number + (uint32_t)((int8_t)read_byte(r) / (kind == 5 ? 1 : 50));
     }
 }
