@@ -17,6 +17,7 @@ from .initialisation.plausibility import check_first_fit
 from .motion.overlay import Tile, overlay_picture
 from .progress import FrameFigures, Progress
 from .rendering.choice import EVALUATORS, MakeEvaluator, usable
+from .rendering.detail import OUTLINE_PX, with_level_for
 from .results.fingerprint import Inputs, fit_inputs
 from .results.journal import SET_ASIDE, UNFINISHED, Journal, Start, set_aside
 from .results.writing import (
@@ -67,7 +68,8 @@ class FitRequest:
     @property
     def settings(self) -> dict[str, object]:
         """What decides the result, beside the take."""
-        return {**asdict(self.search), "evaluator": self.evaluator, "without": list(self.without)}
+        drawn = {"evaluator": self.evaluator, "outline_px": OUTLINE_PX}
+        return {**asdict(self.search), **drawn, "without": list(self.without)}
 
     @property
     def make_evaluator(self) -> MakeEvaluator:
@@ -164,7 +166,7 @@ def _track(outcome: Outcome, request: FitRequest, progress: Progress) -> None:
     views, journal = outcome.views, outcome.journal
     start = int(journal.start.frames[0])
     setting = SETTINGS[request.search.setting][request.search.fast_motion]
-    make_evaluator = request.make_evaluator
+    make_evaluator = with_level_for(journal.start.pose, request.make_evaluator)
     tracker = HierarchicalTracker(journal.start.body, views.cameras, make_evaluator, setting)
     first, last = views.frames
     finished = journal.poses()

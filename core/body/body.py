@@ -89,12 +89,15 @@ class Surface:
         vertex_starts: (S + 1,) int32; segment s owns vertices
             vertex_starts[s] to vertex_starts[s + 1].
         triangle_starts: (S + 1,) int32, likewise.
+        outline_distance: metres that the outlines of its silhouettes lie beside those of the
+            body's finest surface, on average; 0 for that one.
     """
 
     vertices: np.ndarray
     triangles: np.ndarray
     vertex_starts: np.ndarray
     triangle_starts: np.ndarray
+    outline_distance: float = 0.0
 
     def __post_init__(self):
         set_ = object.__setattr__
@@ -106,6 +109,8 @@ class Surface:
             if (np.diff(starts) < 0).any() or [*starts[:1], *starts[-1:]] != [0, len(items)]:
                 raise ValueError(f"expected {name} rising from 0 to {len(items)}, got {starts}")
             set_(self, name, starts)
+        if not 0 <= self.outline_distance < np.inf:
+            raise ValueError(f"expected an outline distance in m, got {self.outline_distance}")
 
 
 @dataclass(frozen=True, eq=False)

@@ -19,6 +19,7 @@ ARRAYS = ("parents", "offsets", "tails", "segment_joints", "point_joints", "poin
 DOF_ARRAYS = ("joints", "kinds", "axes", "limits", "rest_spread")
 SURFACE_ARRAYS = ("vertices", "triangles", "vertex_starts", "triangle_starts")
 PART_LISTS = ("dofs", "grid", "segments")
+_DISTANCE = "outline_distance"
 
 
 def write_body(path: Path, body: Body) -> None:
@@ -45,6 +46,7 @@ def _packed(body: Body) -> dict[str, np.ndarray]:
     values |= {f"dof_{name}": getattr(body.dofs, name) for name in DOF_ARRAYS}
     for level, surface in enumerate(body.surfaces):
         values |= {f"surface_{level}_{name}": getattr(surface, name) for name in SURFACE_ARRAYS}
+        values[f"surface_{level}_{_DISTANCE}"] = surface.outline_distance
     for name in PART_LISTS:
         lists = [getattr(part, name) for part in body.parts]
         values[f"part_{name}"] = np.array([i for indices in lists for i in indices], np.int32)
@@ -97,7 +99,9 @@ def _unpacked(stored: dict[str, np.ndarray]) -> Body:
 
 
 def _surface(stored: dict[str, np.ndarray], level: int) -> Surface:
-    return Surface(**{name: stored[f"surface_{level}_{name}"] for name in SURFACE_ARRAYS})
+    arrays = {name: stored[f"surface_{level}_{name}"] for name in SURFACE_ARRAYS}
+    # files of old do not tell it, and were fitted with the coarsest surface
+    return Surface(**arrays, outline_distance=float(stored.get(f"surface_{level}_{_DISTANCE}", 0)))
 
 
 def _parts(stored: dict[str, np.ndarray]) -> tuple[Part, ...]:

@@ -15,7 +15,10 @@ def scaled(body: Body, factor: float) -> Body:
     """
     if not factor > 0:
         raise ValueError(f"expected a factor above 0, got {factor}")
-    surfaces = tuple(replace(s, vertices=s.vertices * factor) for s in body.surfaces)
+    surfaces = tuple(
+        replace(s, vertices=s.vertices * factor, outline_distance=s.outline_distance * factor)
+        for s in body.surfaces
+    )
     return replace(
         body,
         offsets=body.offsets * factor,

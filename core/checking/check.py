@@ -6,10 +6,10 @@ from dataclasses import dataclass, replace
 
 from ..cameras.arrangement import opposite_pairs
 from ..errors import MocapError
-from ..fitting.hierarchical import EvaluatorFactory
 from ..initialisation.standing import body_centre, standing_height
 from ..native.library import load
 from ..progress import SILENCE, Progress
+from ..rendering.choice import MakeEvaluator
 from ..silhouettes.silhouette import Silhouette
 from ..take.first_look import check_first_look
 from ..take.performer import known_height, performer_body
@@ -37,7 +37,7 @@ class CheckRequest:
     """
 
     initial_frames: Callable[[Take, tuple[int, int]], Sequence[int]]
-    make_evaluator: EvaluatorFactory
+    make_evaluator: MakeEvaluator
     further: Sequence[Callable[[], object]] = ()
     seconds: float = 8.0
     progress: Progress = SILENCE

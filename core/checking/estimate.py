@@ -15,11 +15,13 @@ import numpy as np
 from ..body.body import Body
 from ..body.kinematics import rest_height
 from ..body.scaling import scaled
-from ..fitting.hierarchical import SETTINGS, EvaluatorFactory, HierarchicalTracker
+from ..fitting.hierarchical import SETTINGS, HierarchicalTracker
 from ..fitting.scores import frame_scores
 from ..initialisation.first_pose import placed
 from ..initialisation.pose_kinds import pose_of_kind
 from ..motion.overlay import JPEG_QUALITY, Tile, overlay_picture
+from ..rendering.choice import MakeEvaluator
+from ..rendering.detail import with_level_for
 from ..silhouettes.silhouette import Silhouette
 from ..take.performer import performer_body
 from ..take.take import Take
@@ -33,7 +35,7 @@ _PROGRAM_BYTES = 150e6
 _BYTES_PER_FOOTAGE_PX, _BYTES_PER_WORKING_PX = 38.0, 20.0
 _VIDEO_SHARE = 0.4
 _MOTION_BYTES, _MOTION_BYTES_PER_DOF = 4e3, 32.0
-_BODY_BYTES = 190e3
+_BODY_BYTES = 240e3
 _REPORT_BYTES, _REPORT_BYTES_PER_FRAME = 7.5e3, 50.0
 _PAGE_BYTES, _PAGE_PICTURES = 30e3, 6
 # bytes: for the body, and for each DOF of a frame
@@ -93,7 +95,7 @@ class Trial:
     frame: int
     silhouettes: tuple[Silhouette, ...]
     performer: Performer
-    make_evaluator: EvaluatorFactory
+    make_evaluator: MakeEvaluator
 
 
 def estimated(trial: Trial, reading_s: float) -> Estimate:
@@ -109,7 +111,7 @@ def estimated(trial: Trial, reading_s: float) -> Estimate:
     body = _standing_body(trial)
     pose = pose_of_kind(body, trial.take.initial_pose.kind)
     pose = placed(pose, body, trial.performer.centre, trial.take.floor)
-    tracker = _tracker(trial, body)
+    tracker = _tracker(trial, body, pose)
     round_s, scores_s = _timed_round(tracker, trial.silhouettes, pose)
     picture_s, picture_bytes = _timed_picture(tracker, trial, pose)
     first, last = trial.views.frames
@@ -140,10 +142,11 @@ def estimated(trial: Trial, reading_s: float) -> Estimate:
     )
 
 
-def _tracker(trial: Trial, body: Body) -> HierarchicalTracker:
+def _tracker(trial: Trial, body: Body, pose: np.ndarray) -> HierarchicalTracker:
     search = trial.take.search
     setting = replace(SETTINGS[search.setting][search.fast_motion], rounds=1)
-    return HierarchicalTracker(body, trial.views.cameras, trial.make_evaluator, setting)
+    make_evaluator = with_level_for(pose, trial.make_evaluator)
+    return HierarchicalTracker(body, trial.views.cameras, make_evaluator, setting)
 
 
 def _standing_body(trial: Trial) -> Body:

@@ -7,16 +7,14 @@ the first and last section the surface closes as half an ellipsoid.
 """
 
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 
 from .arrays import frozen_array
+from .ring_choice import fitted_sections
 
 BODY_SAMPLES = 49
 CAP_SAMPLES = 10
-TIE_DIGITS = 9
-"""Symmetric shapes have ties; rounding lets every processor break them alike."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,57 +84,21 @@ class Axis:
     front: np.ndarray
 
 
-def chosen_samples(stations: np.ndarray, radii: np.ndarray, count: int) -> np.ndarray:
-    """(count,) rising indices of samples between which straight interpolation serves best.
-
-    Of ``stations`` (M,) and ``radii`` (M, 4), as `Profile.sampled` gives them.
-    The two ends are always taken; then, one by one, the gap with the largest area between outline
-    and chord is split where they are farthest apart (after Douglas and Peucker 1973, who split by
-    distance alone and so spend their samples on the blunt ends, which joints hide).
-    """
-    chosen = [0, len(stations) - 1]
-    while len(chosen) < min(count, len(stations)):
-        splits = [_split(stations, radii, i, j) for i, j in pairwise(chosen)]
-        chosen = sorted([*chosen, max(splits)[1]])
-    return np.array(chosen)
-
-
-def _split(stations: np.ndarray, radii: np.ndarray, start: int, end: int) -> tuple[float, int]:
-    """Area between outline and chord from sample ``start`` to ``end``, and the farthest sample."""
-    if end - start < 2:
-        return -1.0, start
-    s, r = stations[start : end + 1], radii[start : end + 1]
-    share = (s - s[0])[:, None] / (s[-1] - s[0])
-    gaps = np.abs(r - r[0] - share * (r[-1] - r[0])).sum(axis=1).round(TIE_DIGITS)
-    area = ((gaps[1:] + gaps[:-1]) * np.diff(s)).sum() / 2
-    return round(float(area), TIE_DIGITS), start + int(np.argmax(gaps))
-
-
-def fitted_sections(stations: np.ndarray, radii: np.ndarray, picked: np.ndarray) -> np.ndarray:
-    """(len(picked), 4) radii whose straight interpolation is nearest to all samples' radii.
-
-    Rings on the surface itself would lie inside it wherever it bulges; these lie astride. The
-    poles at both ends keep no radius.
-    """
-    hats = np.array([np.interp(stations, stations[picked], unit) for unit in np.eye(len(picked))])
-    fitted = np.zeros((len(picked), 4))
-    fitted[1:-1] = np.linalg.lstsq(hats[1:-1].T, radii, rcond=None)[0]
-    return np.maximum(fitted, 0)
-
-
 def rings(radii: np.ndarray, exponent: float, sides: int) -> np.ndarray:
     """(K, sides, 2) points outwards and frontwards of sections with ``radii`` (K, 4).
 
     They are widened by (pi / sides) / sin(pi / sides): then the polygon's perimeter, and with it
     its mean width over all directions (Cauchy), is the ellipse's, and silhouettes keep their area.
+    Every second ring is turned by half a side: where one is too wide its neighbours are too
+    narrow, and the outline between them crosses the true one.
     """
-    angles = 2 * np.pi * np.arange(sides) / sides
-    unit = np.stack([np.cos(angles), np.sin(angles)], -1)
+    turns = np.arange(sides) + 0.5 * (np.arange(len(radii))[:, None] % 2)
+    unit = np.stack([np.cos(2 * np.pi / sides * turns), np.sin(2 * np.pi / sides * turns)], -1)
     unit[np.abs(unit) < 1e-12] = 0
     unit = np.sign(unit) * np.abs(unit) ** (2 / exponent)
     positive = unit > 0
-    widths = np.where(positive[:, 0], radii[:, :1], radii[:, 1:2])
-    depths = np.where(positive[:, 1], radii[:, 2:3], radii[:, 3:])
+    widths = np.where(positive[..., 0], radii[:, :1], radii[:, 1:2])
+    depths = np.where(positive[..., 1], radii[:, 2:3], radii[:, 3:])
     return unit * np.stack([widths, depths], -1) / np.sinc(1 / sides)
 
 
@@ -172,15 +134,19 @@ def lofted(
 def tube_triangles(sides: int, count: int) -> np.ndarray:
     """(2 * sides * count, 3) triangles of a pole, ``count`` rings of ``sides`` points and a pole.
 
-    The rings turn about the direction from the first pole to the last by the right-hand rule.
+    The rings turn about the direction from the first pole to the last by the right-hand rule,
+    every second one half a side ahead, as those of `rings` do.
     """
     near = np.arange(sides)
     far = np.roll(near, -1)
-    band = np.concatenate(
-        [np.stack([near, far, near + sides], 1), np.stack([far, far + sides, near + sides], 1)]
-    )
-    bands = (1 + band + sides * np.arange(count - 1)[:, None, None]).reshape(-1, 3)
+    ahead = [[near, far, near + sides], [far, far + sides, near + sides]]
+    behind = [[near, far, far + sides], [near, far + sides, near + sides]]
+    bands = [
+        1 + sides * k + np.stack(triangle, 1)
+        for k in range(count - 1)
+        for triangle in (behind if k % 2 else ahead)
+    ]
     last = 1 + sides * (count - 1)
     start = np.stack([np.zeros_like(near), 1 + far, 1 + near], 1)
     end = np.stack([np.full_like(near, last + sides), last + near, last + far], 1)
-    return np.concatenate([start, bands, end])
+    return np.concatenate([start, *bands, end])

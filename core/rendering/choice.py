@@ -6,6 +6,7 @@ machines with a graphics processor, and only where it was asked for.
 
 import os
 from collections.abc import Callable, Sequence
+from typing import Protocol
 
 from ..body.body import Body
 from ..cameras.camera import Camera
@@ -14,19 +15,25 @@ from ..errors import MocapError
 from .native import NativeEvaluator
 from .reference import ReferenceEvaluator
 
-MakeEvaluator = Callable[[Body, tuple[Camera, ...]], Evaluator]
+
+class MakeEvaluator(Protocol):
+    """What makes an evaluator of one of the body's surfaces in cameras."""
+
+    def __call__(self, body: Body, cameras: tuple[Camera, ...], level: int = 0) -> Evaluator:
+        """The evaluator."""
+        ...
 
 
-def native(body: Body, cameras: tuple[Camera, ...]) -> Evaluator:
+def native(body: Body, cameras: tuple[Camera, ...], level: int = 0) -> Evaluator:
     """The native kernel on all processors."""
-    return NativeEvaluator(body, cameras, threads=os.cpu_count() or 1)
+    return NativeEvaluator(body, cameras, level, threads=os.cpu_count() or 1)
 
 
-def opengl(body: Body, cameras: tuple[Camera, ...]) -> Evaluator:
+def opengl(body: Body, cameras: tuple[Camera, ...], level: int = 0) -> Evaluator:
     """OpenGL with many candidates at once; PyOpenGL is imported by the first call."""
     from .opengl.gpu import OpenGLEvaluator
 
-    return OpenGLEvaluator(body, cameras)
+    return OpenGLEvaluator(body, cameras, level)
 
 
 EVALUATORS: dict[str, MakeEvaluator] = {

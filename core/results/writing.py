@@ -19,6 +19,7 @@ from ..motion.point_track import PointTrack, read_point_track
 from ..motion.recording import recorded
 from ..motion.scoring import score
 from ..progress import Progress
+from ..rendering.detail import drawn_surface
 from ..take.take import EXPORTS, Take
 from ..take.views import Views
 from .fingerprint import Inputs, check_same, stamp_digests
@@ -120,6 +121,7 @@ def write_results(outcome: Outcome, folder: Path, progress: Progress) -> FitResu
         },
         "versions": versions(),
         "cameras": _camera_facts(views, motion),
+        "surface": drawn_surface(start.body, views.cameras, start.pose),
         **fit_quality(motion, fits),
         "error_mm": _error(take, motion, tell),
         "notes": notes,

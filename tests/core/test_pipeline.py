@@ -15,6 +15,7 @@ from silhouette_mocap.core.errors import MocapError
 from silhouette_mocap.core.motion.motion import read_motion
 from silhouette_mocap.core.pipeline import FitRequest, fit, initial_frames
 from silhouette_mocap.core.progress import Silence
+from silhouette_mocap.core.rendering import detail
 from silhouette_mocap.core.results.exporting import check_formats, export
 from silhouette_mocap.core.take import InitialPose, read_take
 from silhouette_mocap.core.take.take import Search
@@ -58,6 +59,8 @@ def test_all_files_are_written_and_agree(fitted):
     report = json.loads((out / "report.json").read_text("utf-8"))
     assert len(report["seconds_per_frame"]) == len(report["evaluations_per_frame"]) == 4
     assert report["cameras"]["cam_01"]["working_size"] == [160, 120]
+    assert report["surface"]["level"] == 0
+    assert report["surface"]["outline_distance_px"] <= report["settings"]["outline_px"]
     video = cv2.VideoCapture(str(out / "overlay.mp4"))
     assert sum(video.read()[0] for _ in range(10)) == 4
 
@@ -75,6 +78,24 @@ def test_a_fitted_body_keeps_its_size(quick_start, small_take, tmp_path, monkeyp
     monkeypatch.setattr(pipeline, "initialised", watched)
     fit(take, FitRequest(tmp_path / "out", frames=(0, 0)), Silence())
     assert requests[0].height_m == pytest.approx(rest_height(read_body(tmp_path / "actor.npz")))
+
+
+def test_the_surface_that_is_told_is_the_one_that_is_fitted(
+    quick_start, small_take, tmp_path, monkeypatch
+):
+    levels = []
+
+    class Watched(pipeline.HierarchicalTracker):
+        def __init__(self, *arguments):
+            super().__init__(*arguments)
+            levels.append((self.evaluator.level, self.half_evaluator.level))
+
+    monkeypatch.setattr(pipeline, "HierarchicalTracker", Watched)
+    # half a px of these pictures, which are 34 px to the metre, is 0.2 mm
+    monkeypatch.setattr(detail, "OUTLINE_PX", 0.0098)
+    result = fit(read_take(small_take), FitRequest(tmp_path / "out", frames=(0, 0)), Silence())
+    assert levels == [(1, 0)]
+    assert result.report["surface"]["level"] == 1
 
 
 def test_the_take_chooses_how_hard_to_search(quick_start, small_take, tmp_path):

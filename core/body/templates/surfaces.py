@@ -5,7 +5,8 @@ from functools import cache
 
 import numpy as np
 
-from ...geometry.loft import Axis, chosen_samples, lofted
+from ...geometry.loft import Axis, lofted
+from ...geometry.ring_choice import chosen_samples
 from ..body import Surface
 from .landmarks import FORWARD, UP, landmarks
 from .profiles import default_profiles
@@ -14,14 +15,22 @@ from .proportions import Proportions
 
 @dataclass(frozen=True)
 class Level:
-    """One level of detail: each piece's own sides and rings times these factors."""
+    """One level of detail.
+
+    Attributes:
+        sides: times each piece's own.
+        rings: likewise.
+        outline_distance: metres that the average adult's outline lies beside the finest level's,
+            measured in silhouettes of moving bodies; that of other adults is nearly the same.
+    """
 
     sides: float
     rings: float
+    outline_distance: float = 0.0
 
 
-LEVELS = (Level(1, 1), Level(3, 3.4))
-"""About 2,000 triangles, and more than the 21,422 of Theobalt et al. 2003."""
+LEVELS = (Level(1, 1, 0.00060), Level(1.5, 1.8, 0.00028), Level(3, 3.4))
+"""About 2,300 and 6,200 triangles, and more than the 21,422 of Theobalt et al. 2003."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,21 +51,21 @@ class Loft:
 
 
 LOFTS = {
-    "pelvis": Loft("root", "waist", FORWARD, (14, 5)),
-    "abdomen": Loft("waist", "chest", FORWARD, (14, 5)),
-    "chest": Loft("chest", "neck", FORWARD, (14, 6)),
-    "neck": Loft("neck", "head", FORWARD, (10, 3)),
-    "skull": Loft("head", "head_end", FORWARD, (12, 6)),
-    "jaw": Loft("skull", "chin", FORWARD, (10, 3)),
-    "clavicle": Loft("left_clavicle_root", "left_shoulder", FORWARD, (8, 4)),
-    "upper_arm": Loft("left_shoulder", "left_elbow", FORWARD, (8, 6)),
+    "pelvis": Loft("root", "waist", FORWARD, (10, 6)),
+    "abdomen": Loft("waist", "chest", FORWARD, (16, 5)),
+    "chest": Loft("chest", "neck", FORWARD, (12, 8)),
+    "neck": Loft("neck", "head", FORWARD, (10, 4)),
+    "skull": Loft("head", "head_end", FORWARD, (12, 5)),
+    "jaw": Loft("skull", "chin", FORWARD, (8, 4)),
+    "clavicle": Loft("left_clavicle_root", "left_shoulder", FORWARD, (6, 3)),
+    "upper_arm": Loft("left_shoulder", "left_elbow", FORWARD, (10, 7)),
     "forearm": Loft("left_elbow", "left_wrist", FORWARD, (8, 5)),
-    "hand": Loft("left_wrist", "left_fingertip", FORWARD, (8, 5)),
+    "hand": Loft("left_wrist", "left_fingertip", FORWARD, (8, 4)),
     "thumb": Loft("left_thumb", "left_thumb_tip", FORWARD, (6, 2)),
-    "thigh": Loft("left_hip", "left_knee", FORWARD, (10, 6)),
-    "shank": Loft("left_knee", "left_ankle", FORWARD, (10, 7)),
-    "foot": Loft("left_heel_sole", "left_ball_sole", UP, (10, 5)),
-    "toes": Loft("left_ball_sole", "left_toe_sole", UP, (8, 4)),
+    "thigh": Loft("left_hip", "left_knee", FORWARD, (12, 7)),
+    "shank": Loft("left_knee", "left_ankle", FORWARD, (12, 5)),
+    "foot": Loft("left_heel_sole", "left_ball_sole", UP, (8, 6)),
+    "toes": Loft("left_ball_sole", "left_toe_sole", UP, (8, 3)),
 }
 """Name of the profile -> its piece; pieces that start on the left exist on both sides."""
 
@@ -70,10 +79,10 @@ def surface(
     places = landmarks(proportions)
     vertices, triangles, vertex_starts, triangle_starts = [], [], [0], [0]
     for name, joint, pieces in segments:
-        for piece in pieces:
+        for piece, mirrored in _sided(name, pieces):
             points, faces = _piece(proportions, places, piece, level)
             points = points - places[joint.replace("right_", "left_")]
-            if name.startswith("right_"):
+            if mirrored:
                 points, faces = points * MIRROR, faces[:, ::-1]
             triangles.append(faces + sum(map(len, vertices)))
             vertices.append(points)
@@ -84,7 +93,16 @@ def surface(
         np.concatenate(triangles),
         np.array(vertex_starts),
         np.array(triangle_starts),
+        level.outline_distance,
     )
+
+
+def _sided(segment: str, pieces: tuple[str, ...]) -> list[tuple[str, bool]]:
+    """The pieces and whether to mirror them; central segments hold left ones on both sides."""
+    if segment.startswith(("left_", "right_")):
+        return [(piece, segment.startswith("right_")) for piece in pieces]
+    both = [piece for piece in pieces if LOFTS[piece].start.startswith("left_")]
+    return [*((piece, False) for piece in pieces), *((piece, True) for piece in both)]
 
 
 def _piece(

@@ -54,6 +54,12 @@ def test_a_body_without_cones_and_parts_comes_back_too(tmp_path, performer_body)
     assert_same(read_body(tmp_path / "body.npz"), bare)
 
 
+def test_a_file_of_old_tells_no_outline_distances_and_is_drawn_with_its_first_surface(path):
+    gone = {f"surface_{level}_outline_distance": None for level in range(3)}
+    rewritten(path, **gone)
+    assert [surface.outline_distance for surface in read_body(path).surfaces] == [0, 0, 0]
+
+
 def test_nothing_in_the_file_is_pickled(path):
     with np.load(path, allow_pickle=False) as data:
         assert all(data[name].dtype != object for name in data.files)
@@ -108,6 +114,7 @@ def test_another_version_is_told(path):
         {"part_dofs": np.full(49, 77, np.int32)},
         {"cone_starts": np.zeros(2, np.int32)},
         {"dof_kinds": np.full(49, 2, np.int32)},
+        {"surface_0_outline_distance": np.nan},
     ],
 )
 def test_a_damaged_file_is_told_before_anything_uses_it(path, changes):

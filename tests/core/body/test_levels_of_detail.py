@@ -33,14 +33,14 @@ def pictures(body):
     }.items():
         bent[body.dofs.names.index(name)] = np.radians(degrees)
     return [
-        [silhouette(body, pose, level, heading) for level in (0, 1)]
+        [silhouette(body, pose, level, heading) for level in (0, -1)]
         for pose in (body.rest_pose, bent)
         for heading in np.radians([10, 55, 100, 145])
     ]
 
 
-def test_the_two_levels_differ_by_two_per_cent_of_the_silhouette_and_nothing_of_its_area(pictures):
+def test_coarse_and_fine_differ_by_two_per_cent_of_the_silhouette_and_nothing_of_its_area(pictures):
     differing = [(coarse ^ fine).sum() / fine.sum() for coarse, fine in pictures]
     grown = [coarse.sum() / fine.sum() - 1 for coarse, fine in pictures]
-    assert np.mean(differing) <= 0.02
+    assert max(differing) <= 0.02
     assert abs(np.mean(grown)) <= 0.003

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.spatial import KDTree
 from silhouette_mocap.core.body.body import POINT_NAMES, DofKind
 from silhouette_mocap.core.body.kinematics import (
     clamped,
@@ -68,7 +69,7 @@ def test_an_unknown_template_is_told_with_the_known_ones():
         template("twins")
 
 
-@pytest.mark.parametrize("level", [0, 1])
+@pytest.mark.parametrize("level", [0, 1, 2])
 def test_every_segment_is_closed_and_turned_outwards(body, level):
     vertices = body.surfaces[level].vertices.astype(float)
     for name, triangles in segment_meshes(body, level):
@@ -80,17 +81,25 @@ def test_every_segment_is_closed_and_turned_outwards(body, level):
         assert np.einsum("ij,ij->", a, np.cross(b, c)) > 0, name
 
 
-@pytest.mark.parametrize("level", [0, 1])
+@pytest.mark.parametrize("level", [0, 1, 2])
 def test_triangles_use_the_vertices_of_their_own_segment(body, level):
     starts = body.surfaces[level].vertex_starts
     for segment, (_, triangles) in enumerate(segment_meshes(body, level)):
         assert starts[segment] <= triangles.min() <= triangles.max() < starts[segment + 1]
 
 
-def test_there_is_a_coarse_and_a_fine_level(body):
-    coarse, fine = (len(surface.triangles) for surface in body.surfaces)
+def test_there_is_a_coarse_a_middle_and_a_fine_level(body):
+    coarse, middle, fine = (len(surface.triangles) for surface in body.surfaces)
     assert 1900 <= coarse <= 2300
+    assert 5500 <= middle <= 6500
     assert fine >= 21422
+
+
+@pytest.mark.parametrize("level", [0, 1, 2])
+def test_both_sides_of_the_body_have_the_same_surface(body, level):
+    vertices = world_vertices(body, body.rest_pose, level)
+    distances, _ = KDTree(vertices).query(vertices * MIRROR)
+    assert distances.max() < 1e-6
 
 
 def test_the_rest_pose_is_allowed_and_not_on_a_cone(body):

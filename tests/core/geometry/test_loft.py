@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
-from silhouette_mocap.core.geometry.loft import Axis, Profile, chosen_samples, lofted, rings
+from silhouette_mocap.core.geometry.loft import Axis, Profile, lofted, rings
+from silhouette_mocap.core.geometry.ring_choice import chosen_samples
 
 FRONT = np.array([0.0, -1.0, 0.0])
 ORIGIN = np.zeros(3)
