@@ -91,8 +91,8 @@ def test_the_surface_that_is_told_is_the_one_that_is_fitted(
             levels.append((self.evaluator.level, self.half_evaluator.level))
 
     monkeypatch.setattr(pipeline, "HierarchicalTracker", Watched)
-    # half a px of these pictures, which are 34 px to the metre, is 0.2 mm
-    monkeypatch.setattr(detail, "OUTLINE_PX", 0.0098)
+    # at 34 px to the metre the coarse outline is 0.020 px off, in halved pictures 0.010
+    monkeypatch.setattr(detail, "OUTLINE_PX", 0.015)
     result = fit(read_take(small_take), FitRequest(tmp_path / "out", frames=(0, 0)), Silence())
     assert levels == [(1, 0)]
     assert result.report["surface"]["level"] == 1
