@@ -13,6 +13,7 @@ import numpy as np
 from mathutils import Vector
 
 from ...core.body.body import Body
+from ...core.body.kinematics import rest_joints
 
 END_LENGTH = 0.02
 """Metres, the bone of an end; Blender silently removes bones of no length."""
@@ -31,15 +32,6 @@ def _bone_name(joint: str) -> str:
         if joint.startswith(prefix):
             return joint.removeprefix(prefix) + suffix
     return joint
-
-
-def rest_joints(body: Body) -> np.ndarray:
-    """(J, 3) joints of the rest pose in world metres."""
-    joints = np.array(body.offsets)
-    for joint, parent in enumerate(body.parents):
-        if parent >= 0:
-            joints[joint] += joints[parent]
-    return joints
 
 
 def add_armature(

@@ -80,6 +80,32 @@ class Dofs:
 
 
 @dataclass(frozen=True, eq=False)
+class Skin:
+    """Which joints a surface's vertices follow, and how much (linear blend skinning).
+
+    In a pose, a vertex lies at the sum of its four weights times where each joint would carry it,
+    had it been fixed to that joint in the rest pose; rounded to float32.
+
+    Attributes:
+        joints: (n, 4) int32.
+        weights: (n, 4) float32, not negative, each row made to sum up to 1.
+    """
+
+    joints: np.ndarray
+    weights: np.ndarray
+
+    def __post_init__(self):
+        set_ = object.__setattr__
+        joints = frozen_array(self.joints, (None, 4), "skin joints", np.int32)
+        weights = frozen_array(self.weights, (len(joints), 4), "skin weights")
+        sums = weights.sum(axis=1, keepdims=True)
+        if (weights < 0).any() or (sums <= 0).any():
+            raise ValueError("expected skin weights of at least 0, and one above 0 in every row")
+        set_(self, "joints", joints)
+        set_(self, "weights", frozen_array(weights / sums, (None, 4), "skin weights", np.float32))
+
+
+@dataclass(frozen=True, eq=False)
 class Surface:
     """Triangle meshes of all segments at one level of detail; any triangle soup.
 
@@ -91,6 +117,7 @@ class Surface:
         triangle_starts: (S + 1,) int32, likewise.
         outline_distance: metres that the outlines of its silhouettes lie beside those of the
             body's finest surface, on average; 0 for that one.
+        skin: which joints the vertices follow; None where all are fixed to their segment's joint.
     """
 
     vertices: np.ndarray
@@ -98,6 +125,7 @@ class Surface:
     vertex_starts: np.ndarray
     triangle_starts: np.ndarray
     outline_distance: float = 0.0
+    skin: Skin | None = None
 
     def __post_init__(self):
         set_ = object.__setattr__
@@ -111,6 +139,8 @@ class Surface:
             set_(self, name, starts)
         if not 0 <= self.outline_distance < np.inf:
             raise ValueError(f"expected an outline distance in m, got {self.outline_distance}")
+        if self.skin is not None and len(self.skin.joints) != len(self.vertices):
+            raise ValueError(f"expected a skin of {len(self.vertices)} rows")
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,7 +164,7 @@ class Part:
 
 @dataclass(frozen=True, eq=False)
 class Body:
-    """A jointed body with rigid segments.
+    """A jointed body, its segments rigid or skinned.
 
     Attributes:
         name: the template or rig it came from.
@@ -191,6 +221,9 @@ class Body:
             raise ValueError("expected the DOF table ordered by joint")
         if (self.parents >= np.arange(joints)).any():
             raise ValueError("expected parents before their children")
+        for surface in self.surfaces:
+            if surface.skin is not None:
+                check_indices(surface.skin.joints, joints, "skin joints")
         if any(len(surface.vertex_starts) != segments + 1 for surface in self.surfaces):
             raise ValueError(f"expected {segments} segments in every surface")
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..errors import MocapError
 from ..geometry.archive import read_archive, write_archive
-from .body import Body, Dofs, Part, Surface
+from .body import Body, Dofs, Part, Skin, Surface
 
 VERSION = 1
 
@@ -47,6 +47,9 @@ def _packed(body: Body) -> dict[str, np.ndarray]:
     for level, surface in enumerate(body.surfaces):
         values |= {f"surface_{level}_{name}": getattr(surface, name) for name in SURFACE_ARRAYS}
         values[f"surface_{level}_{_DISTANCE}"] = surface.outline_distance
+        if surface.skin is not None:
+            values[f"surface_{level}_skin_joints"] = surface.skin.joints
+            values[f"surface_{level}_skin_weights"] = surface.skin.weights
     for name in PART_LISTS:
         lists = [getattr(part, name) for part in body.parts]
         values[f"part_{name}"] = np.array([i for indices in lists for i in indices], np.int32)
@@ -101,7 +104,11 @@ def _unpacked(stored: dict[str, np.ndarray]) -> Body:
 def _surface(stored: dict[str, np.ndarray], level: int) -> Surface:
     arrays = {name: stored[f"surface_{level}_{name}"] for name in SURFACE_ARRAYS}
     # files of old do not tell it, and were fitted with the coarsest surface
-    return Surface(**arrays, outline_distance=float(stored.get(f"surface_{level}_{_DISTANCE}", 0)))
+    distance = float(stored.get(f"surface_{level}_{_DISTANCE}", 0))
+    if f"surface_{level}_skin_joints" not in stored:
+        return Surface(**arrays, outline_distance=distance)
+    skin = (stored[f"surface_{level}_skin_{name}"] for name in ("joints", "weights"))
+    return Surface(**arrays, outline_distance=distance, skin=Skin(*skin))
 
 
 def _parts(stored: dict[str, np.ndarray]) -> tuple[Part, ...]:

@@ -4,10 +4,13 @@ The plain statement of the convention in `body.py`, made of SciPy rotations: slo
 oracle of the native transforms.
 """
 
+from functools import lru_cache
+from itertools import pairwise
+
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from .body import Body, DofKind
+from .body import Body, DofKind, Surface
 
 TOLERANCE = 1e-9
 """Slack of the limits, rad or m: a value put on its limit stays within it."""
@@ -57,14 +60,58 @@ def points(body: Body, poses: np.ndarray) -> np.ndarray:
     return (transforms[..., :3] @ body.point_offsets[..., None])[..., 0] + transforms[..., 3]
 
 
+def rest_joints(body: Body) -> np.ndarray:
+    """(J, 3) world metres of all joints in the rest pose."""
+    joints = np.array(body.offsets)
+    for joint, parent in enumerate(body.parents):
+        if parent >= 0:
+            joints[joint] += joints[parent]
+    return joints
+
+
+@lru_cache(maxsize=16)
+def skinned_segments(body: Body, surface: Surface) -> np.ndarray:
+    """(S,) bool, which segments have a vertex that follows another joint than their own."""
+    if surface.skin is None:
+        return np.zeros(len(body.segment_names), bool)
+    own = np.repeat(body.segment_joints, np.diff(surface.vertex_starts))
+    strays = ((surface.skin.joints != own[:, None]) & (surface.skin.weights > 0)).any(axis=1)
+    starts = surface.vertex_starts
+    return np.array([strays[a:b].any() for a, b in pairwise(starts)], bool)
+
+
+def posed_segment(
+    body: Body, surface: Surface, transforms: np.ndarray, segment: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Vertices (n, 3) of a segment and (3, 4) what carries them into the world, metres.
+
+    ``transforms`` (J, 3, 4) are those of `joint_transforms`. A skinned segment's vertices come in
+    the world already, blended in float64, term by term in the kernel's order, then rounded to
+    float32.
+    """
+    begin, end = surface.vertex_starts[segment : segment + 2]
+    joint, vertices = body.segment_joints[segment], surface.vertices[begin:end].astype(float)
+    if surface.skin is None or not skinned_segments(body, surface)[segment]:
+        return vertices, transforms[joint]
+    rest = rest_joints(body)
+    blended = np.zeros_like(vertices)
+    for k in range(surface.skin.joints.shape[1]):
+        followed = surface.skin.joints[begin:end, k]
+        m, weight = transforms[followed], surface.skin.weights[begin:end, k].astype(float)
+        x, y, z = (vertices + (rest[joint] - rest[followed])).T[:, :, None]
+        carried = m[:, :, 0] * x + m[:, :, 1] * y + m[:, :, 2] * z + m[:, :, 3]
+        blended += weight[:, None] * carried
+    return blended.astype(np.float32).astype(float), np.eye(3, 4)
+
+
 def world_vertices(body: Body, pose: np.ndarray, level: int = -1) -> np.ndarray:
     """(n, 3) world metres of the vertices of one level of detail in a pose (D,)."""
-    surface = body.surfaces[level]
-    counts = np.diff(surface.vertex_starts)
-    joints = np.repeat(body.segment_joints, counts)
-    transforms = joint_transforms(body, np.asarray(pose)[None])[0, joints]
-    vertices = surface.vertices.astype(float)
-    return (transforms[..., :3] @ vertices[..., None])[..., 0] + transforms[..., 3]
+    transforms = joint_transforms(body, np.asarray(pose)[None])[0]
+    placed = []
+    for segment in range(len(body.segment_names)):
+        vertices, carried = posed_segment(body, body.surfaces[level], transforms, segment)
+        placed.append(vertices @ carried[:, :3].T + carried[:, 3])
+    return np.concatenate(placed)
 
 
 def rest_height(body: Body) -> float:

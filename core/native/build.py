@@ -78,7 +78,7 @@ def _objects(target: str) -> list[tuple[str, str, tuple[str, ...]]]:
     return whole + [
         (f"{name}_{path}.o", f"{name}.c", (f"-DSM_PATH={path}", *flags))
         for path, flags in paths.items()
-        for name in ("coverage", "closed", "contours", "outline", "triangles")
+        for name in ("coverage", "closed", "contours", "outline", "skin", "triangles")
     ]
 
 

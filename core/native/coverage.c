@@ -91,10 +91,12 @@ void sm_see(const sm_body *body, const sm_views *views, int32_t segment, sm_work
     }
 }
 
-static void draw_segment(const sm_body *body, const sm_views *views, int32_t segment, sm_work *work) {
+/* Draws a rigid segment into the views from first to last (exclusive). */
+static void draw_segment(const sm_body *body, const sm_views *views, int32_t first, int32_t last, int32_t segment,
+                         sm_work *work) {
     const sm_sight *sight = &work->sight;
     sm_see(body, views, segment, work);
-    for (int32_t view = 0; view < views->views; view++) {
+    for (int32_t view = first; view < last; view++) {
         sm_picture *picture = work->pictures + view;
         if (picture->top >= picture->bottom || sight->where[view] == HIDDEN) continue;
         double a[12];
@@ -108,7 +110,18 @@ static void draw_segment(const sm_body *body, const sm_views *views, int32_t seg
 }
 
 static void draw(const sm_body *body, const sm_views *views, const int32_t *segments, int32_t count, sm_work *work) {
-    for (int32_t k = 0; k < count; k++) draw_segment(body, views, segments[k], work);
+    for (int32_t k = 0; k < count; k++) {
+        if (!body->skinned[segments[k]]) {
+            draw_segment(body, views, 0, views->views, segments[k], work);
+            continue;
+        }
+        int32_t together = work->stride ? 1 : views->views; /* views that see the same pose */
+        for (int32_t view = 0; view < views->views; view += together) {
+            sm_work own;
+            const sm_body *posed = sm_posed(body, view, segments[k], work, &own);
+            draw_segment(posed, views, view, view + together, 0, &own);
+        }
+    }
 }
 
 static int64_t sum_planes(const uint64_t *rows, const uint64_t *plus, const uint64_t *minus, int32_t n) {
@@ -155,6 +168,12 @@ static int64_t sum(const sm_views *views, const sm_weights *weights, int32_t vie
 
 static int32_t snap_checked(const sm_body *body, const sm_views *views, int32_t view, int32_t segment,
                             sm_work *work) {
+    sm_work own;
+    if (body->skinned[segment]) {
+        body = sm_posed(body, view, segment, work, &own);
+        segment = 0;
+        work = &own;
+    }
     double a[12], h[3];
     int32_t start = body->vertex_starts[segment], n = body->vertex_starts[segment + 1] - start, clean = 1;
     sm_see(body, views, segment, work);

@@ -46,6 +46,15 @@ typedef struct {
     size_t rows;                 /* from word to word of a plane */
 } sm_edges;
 
+/* A skinned segment as a body of its own; see skin.c. */
+typedef struct {
+    sm_body body;
+    float *axes[3];       /* (vertices + 8) m in the world */
+    float *face_planes, *cluster_planes;
+    double sphere[4], identity[12];
+    int32_t vertex_starts[2], cluster_starts[2];
+} sm_skin;
+
 /* One call's memory, cut from the caller's scratch. */
 typedef struct {
     double *transforms; /* (V, J, 12) world from joint, or (J, 12) */
@@ -64,6 +73,7 @@ typedef struct {
     uint8_t *counts;    /* (H) crossings of the row; all 0 between segments */
     int32_t *slots;     /* (H, SM_SLOTS) crossings: x * 8 + winding step + 4 */
     sm_edges edges;
+    sm_skin *skin;
     sm_sight sight;
     sm_picture *pictures; /* (V) */
 } sm_work;

@@ -94,6 +94,16 @@ static void cut_edges(void *base, size_t *at, int64_t clusters, int64_t height, 
     e->counts = blank(base, at, rows);
 }
 
+static void cut_skin(void *base, size_t *at, int64_t vertices, int64_t clusters, sm_work *work) {
+    sm_skin *skin = part(base, at, 1, sizeof(sm_skin)), unused;
+    work->skin = skin;
+    if (!base) skin = &unused;
+    for (int i = 0; i < 3; i++) skin->axes[i] = part(base, at, vertices + 8, sizeof(float));
+    skin->face_planes = part(base, at, 6 * SM_CLUSTER * clusters, sizeof(float));
+    skin->cluster_planes = part(base, at, 8 * clusters, sizeof(float));
+    skin->vertex_starts[0] = skin->cluster_starts[0] = 0;
+}
+
 static void clear_picture(sm_picture *picture) { memset(picture->ranges, 0, 8 * (size_t)picture->words); }
 
 size_t sm_cut(const sm_body *body, const sm_views *views, void *base, sm_work *work) {
@@ -122,6 +132,7 @@ size_t sm_cut(const sm_body *body, const sm_views *views, void *base, sm_work *w
     work->counts = part(base, &at, height, 1);
     work->slots = part(base, &at, height * SM_SLOTS, sizeof(int32_t));
     cut_edges(base, &at, edge_clusters, height, most_words, &work->edges);
+    cut_skin(base, &at, vertices, clusters, work);
     cut_sight(base, &at, (views->views + SM_LANES - 1) / SM_LANES * SM_LANES, &work->sight);
     work->pictures = part(base, &at, views->views, sizeof(sm_picture));
     int32_t *ranges = part(base, &at, 2 * most_words * views->views, sizeof(int32_t));
@@ -207,6 +218,12 @@ static int32_t check_segment(const sm_body *body, int32_t s) {
     return SM_OK;
 }
 
+static int32_t check_skin(const sm_body *body) {
+    int any = 0;
+    for (int32_t s = 0; s < body->segments; s++) any |= body->skinned[s];
+    return !any || in_range(body->skin_joints, 4 * (int64_t)body->vertices, body->joints) ? SM_OK : SM_INDEX;
+}
+
 static int32_t check_mesh(const sm_body *body) {
     for (int32_t s = 0; s < body->segments; s++) {
         int32_t error = check_segment(body, s);
@@ -232,6 +249,7 @@ static int32_t check_views(const sm_views *views) {
 int32_t sm_check(const sm_body *body, const sm_views *views) {
     int32_t error = check_body(body);
     if (!error) error = check_mesh(body);
+    if (!error) error = check_skin(body);
     return error ? error : check_views(views);
 }
 

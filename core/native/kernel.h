@@ -1,6 +1,6 @@
 /* The native kernel: poses in, energies and silhouettes out.
  *
- * A body of rigid segments (any triangle soup) is seen by V pinhole cameras. Vertices are projected
+ * A body of segments (any triangle soup, rigid or skinned) is seen by V pinhole cameras. Vertices are projected
  * in double precision and snapped to 1/256 px; from there on a picture is defined by integers alone:
  *
  *   - the centre of pixel (x, y) lies at (256 x, 256 y);
@@ -23,7 +23,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define SM_ABI 4
+#define SM_ABI 5
 #define SM_CLUSTER 16 /* faces to a cluster */
 #define SM_RUN 8      /* the records of a cluster are filled up to a multiple */
 #define SM_LANES 8     /* views side by side */
@@ -66,6 +66,11 @@ typedef struct {
     const int32_t *record_faces;    /* (records, 2) a face that runs from p to q and one that runs
                                        from q to p, counted likewise; the segment's number of faces
                                        stands for "no face", twice one more for "no record" */
+    const uint8_t *skinned;         /* (S) whether the segment's vertices follow several joints */
+    const int32_t *skin_joints;     /* (vertices, 4) where any is skinned, which joints */
+    const float *skin_weights;      /* (vertices, 4) and how much; the sum is 1 */
+    const double *rests;            /* (J, 3) m, joints in the rest pose, where their axes are the
+                                       world's */
     const uint8_t *connected;       /* (S) whether the segment's triangles hang together */
     const int32_t *edge_starts;     /* (S + 1) clusters of the edges of closed segments; others
                                        have none */

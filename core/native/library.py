@@ -12,7 +12,7 @@ from pathlib import Path
 from ..errors import MocapError
 from .build import fingerprint, host_target, library_name
 
-ABI = 4
+ABI = 5
 PLANES, MAPS = 0, 1
 FOLDER = Path(__file__).resolve().parent
 BUILD = f'build it: python -m pip install ziglang, then python "{FOLDER / "build.py"}"'
@@ -35,6 +35,7 @@ class BodyRecord(ctypes.Structure):
         *((name, c_void_p) for name in ("vertex_starts", "cluster_starts", "run_starts")),
         *((name, c_void_p) for name in ("x", "y", "z", "corners", "face_planes")),
         *((name, c_void_p) for name in ("cluster_planes", "record_vertices", "record_faces")),
+        *((name, c_void_p) for name in ("skinned", "skin_joints", "skin_weights", "rests")),
         *((name, c_void_p) for name in ("connected", "edge_starts", "edge_cones")),
         *((name, c_void_p) for name in ("edge_sides", "edge_ends", "edge_corners")),
     )

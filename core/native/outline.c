@@ -52,19 +52,39 @@ static int64_t sample(const sm_body *body, int32_t segment, int32_t k, const dou
     return n;
 }
 
+static int64_t sample_segment(const sm_body *body, const sm_views *views, int32_t view, int32_t segment,
+                              double spacing, int64_t n, sm_points *out, sm_work *work) {
+    double a[12];
+    sm_see(body, views, segment, work);
+    if (work->sight.where[view] != PLAIN) return n;
+    eye e = sm_eye(views, view, &work->sight, a);
+    int32_t found = sm_find_contour(body, segment, &e, a, work);
+    for (int32_t k = 0; k < found; k++)
+        n = sample(body, segment, k, a, spacing, work->pictures + view, work, n, out);
+    return n;
+}
+
+/* Points of a skinned segment from the world into the space of the joint that carries it. */
+static void carry_back(const double *m, int32_t segment, int64_t begin, int64_t end, sm_points *out) {
+    for (int64_t i = begin; i < end && i < out->room; i++) {
+        double *p = out->points + 3 * i, d[3] = {p[0] - m[3], p[1] - m[7], p[2] - m[11]};
+        for (int j = 0; j < 3; j++) p[j] = m[j] * d[0] + m[4 + j] * d[1] + m[8 + j] * d[2];
+        out->segments[i] = segment;
+    }
+}
+
 void sm_outlines(const sm_body *body, const sm_views *views, const int32_t *segments, int32_t count, double spacing,
                  sm_points *out, sm_work *work) {
     int64_t n = 0;
     for (int32_t view = 0; view < views->views; view++) {
         out->starts[view] = n;
         for (int32_t s = 0; s < count; s++) {
-            double a[12];
-            sm_see(body, views, segments[s], work);
-            if (work->sight.where[view] != PLAIN) continue;
-            eye e = sm_eye(views, view, &work->sight, a);
-            int32_t found = sm_find_contour(body, segments[s], &e, a, work);
-            for (int32_t k = 0; k < found; k++)
-                n = sample(body, segments[s], k, a, spacing, work->pictures + view, work, n, out);
+            sm_work own = *work;
+            int64_t begin = n;
+            int skinned = body->skinned[segments[s]];
+            const sm_body *posed = skinned ? sm_posed(body, view, segments[s], work, &own) : body;
+            n = sample_segment(posed, views, view, skinned ? 0 : segments[s], spacing, n, out, &own);
+            if (skinned) carry_back(sm_transform(body, work, view, segments[s]), segments[s], begin, n, out);
         }
     }
     out->starts[views->views] = n;

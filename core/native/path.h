@@ -14,6 +14,7 @@
 #define sm_draw_closed PATH(sm_draw_closed_)
 #define sm_glance PATH(sm_glance_)
 #define sm_see PATH(sm_see_)
+#define sm_posed PATH(sm_posed_)
 #define sm_find_contour PATH(sm_find_contour_)
 #define sm_outlines PATH(sm_outlines_)
 
@@ -34,6 +35,9 @@ int32_t sm_draw_closed(const sm_body *, int32_t segment, const eye *, const doub
 /* The clusters from `start` on, of n, whose faces are not all known to look the same way, go into
  * `wanted`; returns their number. `planes` (8, stride) are those of sm_body. */
 int32_t sm_glance(const float *planes, size_t stride, int32_t start, int32_t n, const eye *, int32_t *wanted);
+
+/* A skinned segment, posed as one view sees it, as the one segment of a body, to be drawn with `own`. */
+const sm_body *sm_posed(const sm_body *, int32_t view, int32_t segment, const sm_work *, sm_work *own);
 
 /* Fills work->sight with what all views see of a segment. */
 void sm_see(const sm_body *, const sm_views *, int32_t segment, sm_work *);

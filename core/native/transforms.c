@@ -69,7 +69,12 @@ void sm_pose_transforms(const sm_body *body, const double *pose, const double *p
 
 void sm_need(const sm_body *body, const int32_t *segments, int32_t count, sm_work *work) {
     memset(work->needed, 0, (size_t)body->joints);
-    for (int32_t k = 0; k < count; k++) work->needed[body->segment_joints[segments[k]]] = 1;
+    for (int32_t k = 0; k < count; k++) {
+        int32_t s = segments[k];
+        work->needed[body->segment_joints[s]] = 1;
+        for (size_t i = 4 * (size_t)body->vertex_starts[s]; body->skinned[s] && i < 4 * (size_t)body->vertex_starts[s + 1]; i++)
+            work->needed[body->skin_joints[i]] = 1;
+    }
     for (int32_t j = body->joints - 1; j > 0; j--)
         if (work->needed[j] && body->parents[j] >= 0) work->needed[body->parents[j]] = 1;
 }

@@ -6,6 +6,7 @@ from itertools import pairwise
 import numpy as np
 
 from ..body.body import Body
+from ..body.kinematics import rest_joints, skinned_segments
 from ..cameras.camera import Camera
 from ..native.library import BodyRecord, ViewsRecord
 from .clusters import clustered_mesh
@@ -74,6 +75,10 @@ def body_record(body: Body, level: int) -> BodyRecord:
         "cluster_planes": np.concatenate([mesh.cluster_planes for mesh in meshes], axis=1),
         "record_vertices": np.concatenate([mesh.records.vertices for mesh in meshes]),
         "record_faces": np.concatenate([mesh.records.faces for mesh in meshes]),
+        "skinned": skinned_segments(body, surface).astype(np.uint8),
+        "skin_joints": np.zeros(0, np.int32) if surface.skin is None else surface.skin.joints,
+        "skin_weights": np.zeros(0, np.float32) if surface.skin is None else surface.skin.weights,
+        "rests": rest_joints(body),
         "connected": np.array([edges.connected for edges in closed], np.uint8),
         "edge_starts": _running([len(edges.sides) for edges in closed]),
         "edge_cones": np.pad(cones.ravel(), (0, 2 * SPARE)),

@@ -10,14 +10,13 @@ derivative of its image is that of the skeleton (Rosenhahn et al., IJCV 73, 2007
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
 
 from ..body.body import Body, Surface
-from ..body.kinematics import joint_transforms
+from ..body.kinematics import joint_transforms, posed_segment
 from ..cameras.camera import Camera
 from ..energy.evaluator import Outline
 from .model import clipping_planes, enclosing_spheres
@@ -52,43 +51,31 @@ def find_outlines(
     return tuple(outlines)
 
 
-@dataclass(frozen=True, eq=False)
-class _Mesh:
-    """One segment: vertices, triangles counted from its first vertex, edge records, sphere."""
-
-    vertices: np.ndarray
-    triangles: np.ndarray
-    records: EdgeRecords
-    sphere: np.ndarray
-
-    def is_wholly_seen(self, camera: Camera, placed: np.ndarray) -> bool:
-        """Whether the sphere round it lies in the region that can be drawn."""
-        centre = placed @ [*self.sphere[:3], 1.0]
-        distances = clipping_planes(camera)[:5] @ [*centre, 1.0]
-        return bool((distances > self.sphere[3] * (1 + 1e-6) + 1e-9).all())
-
-
 @lru_cache(maxsize=8)
-def _meshes(surface: Surface) -> tuple[_Mesh, ...]:
-    spheres = enclosing_spheres(surface.vertices, surface.vertex_starts)
+def _meshes(surface: Surface) -> tuple[tuple[np.ndarray, EdgeRecords], ...]:
+    """By segment: triangles (m, 3) counted from its first vertex, and their edge records."""
     starts = pairwise(surface.vertex_starts), pairwise(surface.triangle_starts)
-    meshes = []
-    for (v0, v1), (f0, f1), sphere in zip(*starts, spheres, strict=True):
-        triangles = surface.triangles[f0:f1] - v0
-        vertices = surface.vertices[v0:v1].astype(float)
-        meshes.append(_Mesh(vertices, triangles, edge_records(triangles), sphere))
-    return tuple(meshes)
+    meshes = [surface.triangles[f0:f1] - v0 for (v0, _), (f0, f1) in zip(*starts, strict=True)]
+    return tuple((triangles, edge_records(triangles)) for triangles in meshes)
+
+
+def _is_wholly_seen(camera: Camera, vertices: np.ndarray, carried: np.ndarray) -> bool:
+    """Whether the sphere round vertices (n, 3) lies in the region that can be drawn."""
+    sphere = enclosing_spheres(vertices, np.array([0, len(vertices)]))[0]
+    centre = carried @ [*sphere[:3], 1.0]
+    distances = clipping_planes(camera)[:5] @ [*centre, 1.0]
+    return bool((distances > sphere[3] * (1 + 1e-6) + 1e-9).all())
 
 
 def _samples(
     body: Body, level: int, camera: Camera, placed: np.ndarray, segment: int, spacing_px: float
 ) -> Outline:
     """All samples of a segment's contour edges, hidden ones too."""
-    mesh, transform = _meshes(body.surfaces[level])[segment], placed[body.segment_joints[segment]]
-    if not len(mesh.triangles) or not mesh.is_wholly_seen(camera, transform):
+    triangles, records = _meshes(body.surfaces[level])[segment]
+    vertices, carried = posed_segment(body, body.surfaces[level], placed, segment)
+    if not len(triangles) or not _is_wholly_seen(camera, vertices, carried):
         return NOWHERE
-    vertices, triangles, records = mesh.vertices, mesh.triangles, mesh.records
-    h = homogeneous_px(camera.projection, transform, vertices)
+    h = homogeneous_px(camera.projection, carried, vertices)
     snapped = snapped_px(h)
     a, b, c = (snapped[triangles[:, k]] for k in range(3))
     areas = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
@@ -102,10 +89,13 @@ def _samples(
     t = (np.arange(len(edge)) - np.repeat(np.cumsum(counts) - counts, counts) + 0.5) / counts[edge]
     p, q, steps, t = p[edge], q[edge], steps[edge], t[:, None]
     ahead = (t / h[q, 2:]) / ((1 - t) / h[p, 2:] + t / h[q, 2:])
+    points = vertices[p] + ahead * (vertices[q] - vertices[p])
+    own = placed[body.segment_joints[segment]]
+    world = points @ carried[:, :3].T + carried[:, 3]
     turned = np.stack([steps[:, 1], -steps[:, 0]], axis=1) / lengths[edge, None]
     return Outline(
         np.full(len(edge), segment, np.int32),
-        vertices[p] + ahead * (vertices[q] - vertices[p]),
+        (world - own[:, 3]) @ own[:, :3],
         snapped[p] / 256.0 + t * steps,
         turned * np.sign(sums[sums != 0])[edge, None],
     )

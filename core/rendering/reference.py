@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..body.body import Body
-from ..body.kinematics import joint_transforms
+from ..body.kinematics import joint_transforms, posed_segment
 from ..cameras.camera import Camera
 from ..energy.evaluator import Outline, WeightMaps
 from .model import GUARD_PX
@@ -190,14 +190,12 @@ class ReferenceEvaluator:
 
     def _projected(self, pose: np.ndarray, view: int, segment: int) -> np.ndarray:
         """(n, 3) homogeneous px of a segment's vertices."""
-        surface = self.body.surfaces[self.level]
         pose = np.asarray(pose, float)
-        transforms = joint_transforms(
-            self.body, np.atleast_2d(pose if pose.ndim == 1 else pose[view])
-        )
-        begin, end = surface.vertex_starts[segment : segment + 2]
-        transform = transforms[0, self.body.segment_joints[segment]]
-        return homogeneous_px(self.cameras[view].projection, transform, surface.vertices[begin:end])
+        pose = pose if pose.ndim == 1 else pose[view]
+        transforms = joint_transforms(self.body, pose[None])[0]
+        surface = self.body.surfaces[self.level]
+        vertices, carried = posed_segment(self.body, surface, transforms, segment)
+        return homogeneous_px(self.cameras[view].projection, carried, vertices)
 
     def _snapped_triangles(self, pose: np.ndarray, view: int, segments: Sequence[int]):
         """Yields (3, 2) int64 triangles, clipped where they leave the region that can be drawn."""

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...body.body import Body
+from ...body.kinematics import skinned_segments
 from ...cameras.camera import Camera
 from ...energy.evaluator import Outline, WeightMaps
 from ..outline import find_outlines
@@ -79,6 +80,8 @@ class OpenGLBase:
     ):
         if not cameras or not all(camera.is_pinhole for camera in cameras):
             raise ValueError("expected at least one camera, all of them pinhole")
+        if skinned_segments(body, body.surfaces[level]).any():
+            raise no_opengl("it draws rigid segments only")
         self.body, self.cameras, self.level = body, tuple(cameras), level
         self.thread = thread or shared_thread()
         check_version(self.thread, self.version)
