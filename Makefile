@@ -8,7 +8,7 @@ MOCAP := .venv/bin/silhouette-mocap
 KERNEL := $(wildcard core/native/build.py core/native/*.c core/native/*.h)
 CORE_TESTS := tests/core tests/test_layers.py
 
-.PHONY: help env demo demo-real test lint test-core test-command test-addon bench speed fuzz fuzz-kernel long-take blender clean
+.PHONY: help env demo demo-real test lint test-core test-command test-addon bench speed fuzz fuzz-kernel sanitize-kernel long-take blender clean
 
 help: ## This list
 	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /make \1\t/' | expand -t 18
@@ -69,6 +69,9 @@ fuzz: .venv/.ready ## 10,000 damaged takes, calibrations and masks through a rea
 seconds ?= 60
 fuzz-kernel: .venv/.ready ## The kernel under sanitizers on scenes made of bytes; seconds=3600 for an hour (gcc)
 	@cd tests && ../.venv/bin/python -m benchmarks.fuzz_kernel --seconds $(seconds)
+
+sanitize-kernel: .venv/.ready ## The kernel's tests under AddressSanitizer, UBSan and valgrind (gcc, valgrind)
+	@cd tests && ../.venv/bin/python -m benchmarks.sanitize_kernel
 
 long-take: .venv/.ready ## Memory and disk over a fit of 10,000 frames
 	@mkdir -p out && cd tests && ../.venv/bin/python -m benchmarks.long_take --every 1000 --svg ../out/long_take.svg

@@ -181,6 +181,16 @@ def test_a_t_junction_leaves_no_gap_and_covers_no_more(scenes):
             np.testing.assert_array_equal(picture, expected)
 
 
+def test_a_box_on_pixel_centres_covers_its_left_and_top_but_not_its_right_and_bottom(scenes):
+    corners = [(x, y, z) for x in (-0.25, 0.25) for y in (-0.25, 0.25) for z in (0.0, 0.5)]
+    quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    faces = np.array([t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))])
+    expected = np.zeros(SIZE[::-1], bool)
+    expected[9:41, 20:52] = True  # the near side, 64 px to the metre
+    for picture in pictures_of(everyone(still(scenes, corners, faces), [front(1.0)])):
+        np.testing.assert_array_equal(picture, expected)
+
+
 def test_an_open_cylinder_is_seen_through_and_a_closed_one_is_not(scenes):
     pipe, can = (still(scenes, *cylinder(24, 0.25, 0.3, caps)) for caps in (False, True))
     for hollow, full in zip(
