@@ -9,10 +9,11 @@ from pathlib import Path
 
 from ..body.templates import template
 from ..errors import MocapError
+from ..optimisers.evolution import Evolution
 from ..progress import Progress
 from . import against_prototypes as prototype
 from .cameras import CameraCosts, camera_costs
-from .levels import LevelCheck, level_check
+from .levels import FIT, LevelCheck, level_check
 from .machine import machine
 from .prototypes import FILES, Prototypes, are_in
 from .rows import (
@@ -45,6 +46,7 @@ class EnergySettings:
         camera_counts: for the cost per camera.
         frames: fitted of each sequence.
         fits: for the change of the pose by the coarse mesh.
+        fit: how hard those search.
         prototypes: folder of the frozen prototypes; None without.
     """
 
@@ -53,6 +55,7 @@ class EnergySettings:
     camera_counts: tuple[int, ...] = (2, 4, 6, 8, 10, 12, 14, 16)
     frames: int = 40
     fits: int = 50
+    fit: Evolution = FIT
     prototypes: Path | None = None
 
     @property
@@ -86,7 +89,7 @@ class EnergyFigures:
         levels: what the coarse mesh changes.
         table2: by sequence and row.
         prototypes: by size and part; empty without prototypes.
-        triangles: of the full and of the coarse mesh.
+        triangles: of the full and of the coarse mesh, by size.
         notes: what was left out, and why.
     """
 
@@ -97,7 +100,7 @@ class EnergyFigures:
     levels: LevelCheck
     table2: dict[str, dict[str, SequenceFits]]
     prototypes: dict[str, dict[str, Rates]]
-    triangles: tuple[int, int]
+    triangles: dict[str, tuple[int, int]]
     notes: tuple[str, ...]
 
 
@@ -128,7 +131,7 @@ def energy_figures(settings: EnergySettings, progress: Progress) -> EnergyFigure
     costs = camera_costs(scene, settings.camera_counts, plain, settings.turns)
     tell.advance()
     cameras = studio()
-    levels = level_check(body, cameras, settings.fits, tell.advance)
+    levels = level_check(body, cameras, settings.fits, tell.advance, settings.fit)
     fits = {name: table2(body, cameras, name, settings.frames, tell.advance) for name in SEQUENCES}
     return EnergyFigures(
         machine=facts,
@@ -138,7 +141,10 @@ def energy_figures(settings: EnergySettings, progress: Progress) -> EnergyFigure
         levels=levels,
         table2=fits,
         prototypes=_prototype_figures(settings, tell),
-        triangles=(triangles(body, full_level), triangles(body, coarse_level)),
+        triangles={
+            named(size): (triangles(body, size, full_level), triangles(body, size, coarse_level))
+            for size in settings.sizes
+        },
         notes=tuple(notes),
     )
 

@@ -20,10 +20,14 @@ Ratios = dict[str, dict[str, float | None]]
 
 def as_dict(figures: EnergyFigures) -> dict:
     """All figures for JSON; ratios are medians over the turns, None where a side is missing."""
+    by_size = {
+        size: dict(zip(LEVELS, counts, strict=True)) for size, counts in figures.triangles.items()
+    }
     return {
         "machine": figures.machine,
         "notes": figures.notes,
-        "triangles": dict(zip(LEVELS, figures.triangles, strict=True)),
+        "triangles": next(iter(by_size.values())),
+        "triangles_by_size": by_size,
         **_ratios(figures),
         **_level_figures(figures),
         "table1": {size: _table1(table) for size, table in figures.table1.items()},
@@ -79,7 +83,7 @@ def _level_figures(figures: EnergyFigures) -> dict:
         "lod_energy_difference": levels["energy_difference"]["max"],
         "lod_pose_change_mm": levels["pose_change_mm"]["mean"],
         "lod_pose_change_max_mm": levels["pose_change_mm"]["max"],
-        "lod_pose_change_control_mm": levels["full_mesh_from_elsewhere_mm"]["mean"],
+        "lod_pose_change_control_mm": levels["full_mesh_again_mm"]["mean"],
         "lod_best_pose_shift_mm": levels["best_pose_shift_mm"]["mean"],
         "lod_best_pose_shift_max_mm": levels["best_pose_shift_mm"]["max"],
         "lod": levels,

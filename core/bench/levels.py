@@ -2,33 +2,38 @@
 
 Signed energies cancel and would hide a mask that is shifted, so the masks themselves are compared,
 too; and in the end the pose counts that a fit finds. Silhouettes are drawn with the full mesh, so
-that its best pose is known: the true one, where nothing differs. How far a search with the coarse
-mesh goes away from there is what the mesh changes. From a perturbed start, fits with either mesh
-end apart for a reason of their own, too: a search through counted pixels sticks. A second fit with
-the full mesh from a start that differs by nothing to be seen tells how much of it that is.
+that its best pose is known: the true one, where nothing differs. Fits with either mesh begin at the
+same perturbed pose and draw the same candidates. They are evolutions of whole poses, which come as
+near to the best pose as the pixels allow; a search along single joints sticks some millimetres
+beside it, with any mesh. How much of the change is the search's own is told by a second fit with
+the full mesh that draws other candidates.
 """
 
+import os
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from ..body.body import Body
-from ..body.kinematics import clamped, points
+from ..body.kinematics import clamped, joint_transforms, points
 from ..cameras.camera import Camera
+from ..energy.evaluator import WeightMaps
 from ..energy.weight_maps import xor_weight_maps
-from ..fitting.hierarchical import FAITHFUL, HierarchicalTracker
+from ..optimisers.evolution import Evolution, evolved
 from ..rendering.native import NativeEvaluator
 from .rows import coarse_level, full_level
 from .sequences import sequence
 from .stage import WHOLE_SPREAD, filmed
 
-FIT = replace(FAITHFUL, grid_steps=1, grid_half_width=0.0, fine_torso=True)
-"""Downhill from near by; a grid's jumps would say nothing of the mesh."""
-_START_SPREAD = 0.03
-_SAME_SPREAD = 1e-4
+FIT = Evolution(population=80, generations=150, first_step=0.005, last_step=5e-5)
+"""Steps are in metres that the joints move; two such fits end less than 1 mm apart on average."""
+_START_SPREAD = 0.01
 _CANDIDATES = 16
 _EVERY = 5
+_DERIVATIVE_STEP = 1e-4
+_STIFFNESS = 0.02
+"""Of turns that move no joint, beside those that do."""
 _MM = 1000.0
 
 
@@ -40,19 +45,19 @@ class LevelCheck:
         mask_xor: (P, V) px that differ, as a share of the full mesh's.
         energy_difference: (P, candidates) differences of energies summed over views, as a share
             of the px of the observed silhouettes.
-        best_pose_shift: (F, 14) mm that a fit with the coarse mesh goes away from the full mesh's
-            best pose.
         pose_change: (F, 14) mm between the points that fits with either mesh find from the same
-            perturbed start.
-        own_change: (G, 14) mm between the points that two fits with the full mesh find whose
-            starts differ by nothing that can be seen.
+            start.
+        own_change: (G, 14) mm between the points that two fits with the full mesh find from the
+            same start with other candidates.
+        best_pose_shift: (F, 14) mm of the points that the coarse mesh's fits find from those of
+            the full mesh's best pose.
     """
 
     mask_xor: np.ndarray
     energy_difference: np.ndarray
-    best_pose_shift: np.ndarray
     pose_change: np.ndarray
     own_change: np.ndarray
+    best_pose_shift: np.ndarray
 
     def as_dict(self) -> dict:
         """For JSON."""
@@ -61,75 +66,90 @@ class LevelCheck:
             "fits": len(self.pose_change),
             "mask_xor": _spread(self.mask_xor),
             "energy_difference": _spread(self.energy_difference),
-            "best_pose_shift_mm": _spread(self.best_pose_shift),
             "pose_change_mm": _spread(self.pose_change),
             "pose_change_mm_per_fit": self.pose_change.mean(axis=1).tolist(),
-            "full_mesh_from_elsewhere_mm": _spread(self.own_change),
+            "full_mesh_again_mm": _spread(self.own_change),
+            "best_pose_shift_mm": _spread(self.best_pose_shift),
         }
 
 
 def level_check(
-    body: Body, cameras: tuple[Camera, ...], count: int, advance: Callable[[], None]
+    body: Body,
+    cameras: tuple[Camera, ...],
+    count: int,
+    advance: Callable[[], None],
+    fit: Evolution = FIT,
 ) -> LevelCheck:
     """Over ``count`` poses of both sequences; ``advance`` is called after each."""
     rng = np.random.default_rng(7)
     poses = np.concatenate([sequence(body, name, 90)[15::3] for name in "AB"])
     poses = poses[np.linspace(0, len(poses) - 1, count).round().astype(int)]
-    trackers = [_tracker(body, cameras, level) for level in (coarse_level, full_level)]
-    masks, energies, shifts, changes, own = [], [], [], [], []
+    threads = os.cpu_count() or 1
+    coarse, full = (
+        NativeEvaluator(body, cameras, choice(body, cameras), threads)
+        for choice in (coarse_level, full_level)
+    )
+    masks, energies, changes, own, shifts = [], [], [], [], []
     for number, pose in enumerate(poses):
-        masks.append(_mask_xor(trackers, pose))
-        energies.append(_energy_difference(trackers, pose, rng))
-        ends = _fits(trackers, pose, rng, again=number % _EVERY == 0)
-        shifts.append(_distances(ends[0], points(body, pose[None])[0]))
-        changes.append(_distances(ends[1], ends[2]))
-        own += [_distances(ends[2], other) for other in ends[3:]]
+        maps = xor_weight_maps(filmed(full, pose))
+        masks.append(_mask_xor(coarse, full, pose))
+        energies.append(_energy_difference(coarse, full, maps, pose, rng))
+        start = clamped(body, pose[None] + rng.normal(0, _START_SPREAD, (1, len(pose))))[0]
+        by_coarse, by_full = (_fitted(e, maps, start, fit, number) for e in (coarse, full))
+        changes.append(_distances(by_coarse, by_full))
+        shifts.append(_distances(by_coarse, points(body, pose[None])[0]))
+        if number % _EVERY == 0:
+            own.append(_distances(by_full, _fitted(full, maps, start, fit, count + number)))
         advance()
-    return LevelCheck(*map(np.array, (masks, energies, shifts, changes, own)))
+    return LevelCheck(*map(np.array, (masks, energies, changes, own, shifts)))
 
 
-def _tracker(
-    body: Body, cameras: tuple[Camera, ...], level: Callable[[Body], int]
-) -> HierarchicalTracker:
-    return HierarchicalTracker(body, cameras, lambda b, c: NativeEvaluator(b, c, level(b)), FIT)
-
-
-def _mask_xor(trackers: list[HierarchicalTracker], pose: np.ndarray) -> list[float]:
-    coarse, full = (tracker.evaluator.silhouettes(pose) for tracker in trackers)
-    return [
-        np.count_nonzero(c ^ f) / max(np.count_nonzero(f), 1)
-        for c, f in zip(coarse, full, strict=True)
-    ]
+def _mask_xor(coarse: NativeEvaluator, full: NativeEvaluator, pose: np.ndarray) -> list[float]:
+    pictures = zip(coarse.silhouettes(pose), full.silhouettes(pose), strict=True)
+    return [np.count_nonzero(c ^ f) / max(np.count_nonzero(f), 1) for c, f in pictures]
 
 
 def _energy_difference(
-    trackers: list[HierarchicalTracker], pose: np.ndarray, rng: np.random.Generator
+    coarse: NativeEvaluator,
+    full: NativeEvaluator,
+    maps: WeightMaps,
+    pose: np.ndarray,
+    rng: np.random.Generator,
 ) -> np.ndarray:
-    maps = xor_weight_maps(filmed(trackers[1].evaluator, pose))
     poses = pose + rng.normal(0, WHOLE_SPREAD, (_CANDIDATES, len(pose)))
-    coarse, full = (
-        t.evaluator.energies(t.evaluator.prepared(maps), poses).sum(axis=1) for t in trackers
-    )
-    return np.abs(coarse - full) / maps.constants.sum()
+    one, other = (e.energies(e.prepared(maps), poses).sum(axis=1) for e in (coarse, full))
+    return np.abs(one - other) / maps.constants.sum()
 
 
-def _fits(
-    trackers: list[HierarchicalTracker], pose: np.ndarray, rng: np.random.Generator, again: bool
+def _fitted(
+    evaluator: NativeEvaluator, maps: WeightMaps, start: np.ndarray, fit: Evolution, seed: int
 ) -> np.ndarray:
-    """(3 or 4, 14, 3) points found by the coarse mesh from the true pose, by the coarse and the
-    full mesh from a perturbed one, and ``again`` by the full mesh from just beside that.
+    """(14, 3) points of the pose found."""
+    body, weights = evaluator.body, evaluator.prepared(maps)
+
+    def energy(poses: np.ndarray) -> np.ndarray:
+        return evaluator.energies(weights, clamped(body, poses)).sum(axis=1)
+
+    found = evolved(energy, start, equal_steps(body, start), fit, np.random.default_rng(seed))
+    return points(body, clamped(body, found[None]))[0]
+
+
+def equal_steps(body: Body, pose: np.ndarray) -> np.ndarray:
+    """(D, D) columns of steps from ``pose`` (D,) that move joints and bone ends by 1 m rms.
+
+    To first order, that is; what they do is perpendicular. Steps that move none of the joints are
+    stiffened, and so stay finite.
     """
-    coarse, full = trackers
-    body = coarse.body
-    silhouettes = filmed(full.evaluator, pose)
-    start = pose + rng.normal(0, _START_SPREAD, len(pose))
-    beside = start + rng.normal(0, _SAME_SPREAD, len(pose))
-    starts = clamped(body, np.stack([pose, start, start, beside]))
-    found = [
-        tracker.fit(silhouettes, start, start).pose
-        for tracker, start in zip((coarse, coarse, full, full)[: 3 + again], starts, strict=False)
-    ]
-    return points(body, np.stack(found))
+    count, step = len(pose), _DERIVATIVE_STEP * np.eye(len(pose))
+    transforms = joint_transforms(body, np.concatenate([pose + step, pose - step]))
+    joints = transforms[..., 3]
+    tails = (transforms[..., :3] @ body.tails[..., None])[..., 0] + joints
+    ends = np.concatenate([joints, tails], axis=1).reshape(2, count, -1)
+    slopes = (ends[0] - ends[1]) / (2 * _DERIVATIVE_STEP)
+    squares = 3 * slopes @ slopes.T / slopes.shape[1]
+    squares += np.diag(np.full(count, _STIFFNESS**2 * np.median(np.diag(squares))))
+    values, axes = np.linalg.eigh(squares)
+    return axes / np.sqrt(values)
 
 
 def _distances(one: np.ndarray, other: np.ndarray) -> np.ndarray:

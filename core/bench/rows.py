@@ -9,6 +9,7 @@ import numpy as np
 from ..body.body import Body
 from ..cameras.camera import Camera
 from ..errors import MocapError
+from ..rendering.detail import level_for
 from ..rendering.native import NativeEvaluator
 from ..rendering.opengl.context import shared_thread
 from ..rendering.opengl.gpu import OpenGLEvaluator
@@ -39,14 +40,18 @@ class Row:
     weighted: bool = False
 
 
-def full_level(body: Body) -> int:
+LevelChoice = Callable[[Body, Sequence[Camera]], int]
+"""Which of a body's surfaces to draw in cameras."""
+
+
+def full_level(body: Body, cameras: Sequence[Camera] = ()) -> int:
     """The finest of the body's surfaces."""
     return len(body.surfaces) - 1
 
 
-def coarse_level(body: Body) -> int:
-    """The surface that fits are drawn with."""
-    return 0
+def coarse_level(body: Body, cameras: Sequence[Camera]) -> int:
+    """The surface that fits with these cameras are drawn with."""
+    return level_for(body, cameras, body.rest_pose)
 
 
 def native_rows() -> list[Row]:
@@ -69,7 +74,7 @@ def hull_rows() -> list[Row]:
     """OpenCV's convex hulls."""
 
     def make(body: Body, cameras: Sequence[Camera]) -> HullEvaluator:
-        return HullEvaluator(body, cameras, coarse_level(body))
+        return HullEvaluator(body, cameras, coarse_level(body, cameras))
 
     return [Row("cv2_hulls", "cv2 convex hulls, coarse mesh", make)]
 
@@ -116,15 +121,15 @@ def variant(
     return Variant(row.name, energies, comparable=not row.weighted)
 
 
-def _native(level: Callable[[Body], int], threads: int = 1) -> Callable:
+def _native(level: LevelChoice, threads: int = 1) -> Callable:
     def make(body: Body, cameras: Sequence[Camera]) -> NativeEvaluator:
-        return NativeEvaluator(body, cameras, level(body), threads)
+        return NativeEvaluator(body, cameras, level(body, cameras), threads)
 
     return make
 
 
-def _at(kind: Callable, level: Callable[[Body], int]) -> Callable:
+def _at(kind: Callable, level: LevelChoice) -> Callable:
     def make(body: Body, cameras: Sequence[Camera]) -> Any:
-        return kind(body, tuple(cameras), level(body))
+        return kind(body, tuple(cameras), level(body, cameras))
 
     return make

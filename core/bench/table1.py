@@ -16,7 +16,7 @@ from ..body.body import Body
 from ..cameras.camera import Camera
 from ..errors import MocapError
 from ..rendering.native import NativeEvaluator
-from .rows import Row, full_level, variant
+from .rows import LevelChoice, Row, full_level, variant
 from .stage import PART_SPREAD, WHOLE_SPREAD, Stage, candidates_about, filmed, part_named, studio
 from .turns import Rates, Turns, measured
 
@@ -141,6 +141,6 @@ def _rates(stage: Stage, cell: Cell, way: str, evaluators: dict[Row, Any], turns
     return measured(variants, candidates_about(stage.pose, moved, spread, turns.poses), turns)
 
 
-def triangles(body: Body, level: Callable[[Body], int] = full_level) -> int:
-    """How many the surface has that ``level`` chooses."""
-    return len(body.surfaces[level(body)].triangles)
+def triangles(body: Body, size: tuple[int, int], level: LevelChoice = full_level) -> int:
+    """How many the surface has that ``level`` chooses at a resolution (width, height)."""
+    return len(body.surfaces[level(body, studio(size))].triangles)

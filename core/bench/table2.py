@@ -106,7 +106,7 @@ class _Track:
         executor: Executor,
     ):
         def evaluator(body: Body, cameras: tuple[Camera, ...]) -> NativeEvaluator:
-            return NativeEvaluator(body, cameras, coarse_level(body))
+            return NativeEvaluator(body, cameras, coarse_level(body, cameras))
 
         chosen = executor if settings.shared_out else None
         self.tracker = HierarchicalTracker(body, cameras, evaluator, settings, chosen)

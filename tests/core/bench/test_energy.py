@@ -14,18 +14,21 @@ from silhouette_mocap.core.bench.energy_files import write_energy_files
 from silhouette_mocap.core.bench.energy_report import as_dict
 from silhouette_mocap.core.bench.markdown import lined
 from silhouette_mocap.core.bench.plots import Bars, bars_picture
-from silhouette_mocap.core.bench.rows import Row, native_rows
+from silhouette_mocap.core.bench.rows import Row, coarse_level, native_rows
 from silhouette_mocap.core.bench.table1 import Scene, Teller, table1, triangles
 from silhouette_mocap.core.bench.turns import Turns
 from silhouette_mocap.core.body.templates import template
 from silhouette_mocap.core.cli import main
 from silhouette_mocap.core.errors import MocapError
+from silhouette_mocap.core.optimisers.evolution import Evolution
 from silhouette_mocap.core.progress import Silence
 from silhouette_mocap.core.rendering.native import NativeEvaluator
 from silhouette_mocap.core.results.report import write_report
 from synthetic import small_body
 
-TINY = EnergySettings(Turns(1, 0.001, 64, 16), ((64, 48),), camera_counts=(2, 3), frames=1, fits=1)
+TINY = EnergySettings(
+    Turns(1, 0.001, 64, 16), ((64, 48),), (2, 3), frames=1, fits=1, fit=Evolution(8, 3)
+)
 RATIO_KEYS = {"exact": {"whole", "limb", "hand"}, "lod": {"whole", "limb", "hand"}}
 
 
@@ -102,6 +105,7 @@ def test_the_coarse_mesh_is_judged_in_three_ways(report):
     assert 0 < report["lod_mask_xor"] < 0.2
     assert 0 <= report["lod_energy_difference"] < 0.05
     assert 0 <= report["lod_pose_change_mm"] <= report["lod_pose_change_max_mm"]
+    assert report["lod_pose_change_control_mm"] >= 0
     assert 0 <= report["lod_best_pose_shift_mm"] <= report["lod_best_pose_shift_max_mm"]
 
 
@@ -114,7 +118,10 @@ def test_table_1_has_every_window_with_and_without_prerendering(report):
 
 
 def test_the_body_has_as_many_triangles_as_the_papers():
-    assert triangles(template("sixteen_segment")) >= 21422
+    body = template("sixteen_segment")
+    assert triangles(body, (320, 240)) >= 21422
+    assert triangles(body, (320, 240), coarse_level) < 2400
+    assert triangles(body, (320, 240), coarse_level) < triangles(body, (1920, 1080), coarse_level)
 
 
 def test_full_mesh_rows_agree_to_the_pixel(report):
