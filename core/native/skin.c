@@ -26,7 +26,7 @@ static void blend(const sm_body *body, const double *transforms, int32_t start, 
 
 /* A sphere round the vertices, not the smallest. */
 static void enclose(float *const *axes, int32_t n, double *sphere) {
-    double low[3], high[3], radius = 0.0;
+    double low[3], high[3], radius = 0.0, total = 0.0;
     for (int a = 0; a < 3; a++) {
         low[a] = INFINITY;
         high[a] = -INFINITY;
@@ -40,8 +40,9 @@ static void enclose(float *const *axes, int32_t n, double *sphere) {
         double x = axes[0][i] - sphere[0], y = axes[1][i] - sphere[1], z = axes[2][i] - sphere[2];
         double square = x * x + y * y + z * z;
         radius = square > radius ? square : radius;
+        total += square;
     }
-    sphere[3] = sqrt(radius);
+    sphere[3] = sqrt(radius) + 0.0 * total; /* not a number where one vertex is nowhere */
 }
 
 /* Planes and margins of n faces, as in sm_body. */

@@ -121,6 +121,7 @@ void run_case(const uint8_t *data, size_t size) {
     }
     s.body.segment_joints = carriers;
     fill_surfaces(&s, meshes, segments);
+    read_skin(&r, &s);
     if (is_spoilt) spoil(&r, &s);
     int32_t error = sm_check(&s.body, &s.views);
     if (!is_spoilt) expect(error == SM_OK, "a sound body is taken");

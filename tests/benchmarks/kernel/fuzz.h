@@ -40,6 +40,7 @@ void *new_room(scene *, size_t count, size_t size);  /* not filled */
 void *new_array(scene *, size_t count, size_t size); /* all 0 */
 void read_mesh(reader *, mesh *);
 void read_body(reader *, scene *);
+void read_skin(reader *, scene *);
 void read_views(reader *, scene *);
 void fill_surfaces(scene *, const mesh *, int32_t segments);
 void spoil(reader *, scene *);

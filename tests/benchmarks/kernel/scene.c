@@ -73,6 +73,32 @@ void read_body(reader *r, scene *s) {
     s->body.dof_axes = axes;
 }
 
+/* Which segments follow several joints, and how; to be called when the surfaces are there. */
+void read_skin(reader *r, scene *s) {
+    sm_body *body = &s->body;
+    size_t joints = (size_t)body->joints, corners = 0;
+    uint8_t *skinned = new_array(s, (size_t)body->segments, 1);
+    double *rests = new_array(s, 3 * joints, 8);
+    for (int32_t k = 0; k < body->segments; k++) {
+        skinned[k] = read_below(r, 3) == 2;
+        if (skinned[k]) corners = 4 * (size_t)body->vertices;
+    }
+    for (size_t j = 0; j < joints; j++)
+        for (size_t i = 0; i < 3; i++)
+            rests[3 * j + i] = body->offsets[3 * j + i] + (body->parents[j] < 0 ? 0.0 : rests[3 * (size_t)body->parents[j] + i]);
+    int32_t *followed = new_array(s, corners, 4), most = 1 + (int32_t)read_below(r, 4);
+    float *weights = new_array(s, corners, 4);
+    for (size_t v = 0; v < corners; v += 4) {
+        float sum = 0.0f;
+        for (int32_t k = 0; k < most; k++) {
+            followed[v + (size_t)k] = (int32_t)read_below(r, (uint32_t)joints);
+            sum += weights[v + (size_t)k] = (float)(1 + read_byte(r));
+        }
+        for (int32_t k = 0; k < most; k++) weights[v + (size_t)k] /= sum;
+    }
+    body->skinned = skinned, body->skin_joints = followed, body->skin_weights = weights, body->rests = rests;
+}
+
 static void read_rotation(reader *r, double m[3][3]) {
     double q[4], n = 0.0;
     int32_t turns = (int32_t)read_below(r, 2);
