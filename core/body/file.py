@@ -105,10 +105,11 @@ def _surface(stored: dict[str, np.ndarray], level: int) -> Surface:
     arrays = {name: stored[f"surface_{level}_{name}"] for name in SURFACE_ARRAYS}
     # files of old do not tell it, and were fitted with the coarsest surface
     distance = float(stored.get(f"surface_{level}_{_DISTANCE}", 0))
-    if f"surface_{level}_skin_joints" not in stored:
-        return Surface(**arrays, outline_distance=distance)
-    skin = (stored[f"surface_{level}_skin_{name}"] for name in ("joints", "weights"))
-    return Surface(**arrays, outline_distance=distance, skin=Skin(*skin))
+    skin = None
+    if f"surface_{level}_skin_joints" in stored:
+        joints, weights = (stored[f"surface_{level}_skin_{name}"] for name in ("joints", "weights"))
+        skin = Skin(joints, weights)
+    return Surface(**arrays, outline_distance=distance, skin=skin)
 
 
 def _parts(stored: dict[str, np.ndarray]) -> tuple[Part, ...]:
