@@ -168,17 +168,14 @@ static void cross_rows(edges *e, int32_t width, sm_work *work) {
     e->n = 0;
 }
 
-/* Takes up to a chunk of the found edges, those that are drawn and cross rows. */
-static void take_edges(const sm_body *body, const int32_t *found, int32_t n, int32_t front,
-                       const sm_picture *picture, edges *e, sm_work *work) {
+/* Takes up to a chunk of the contour's edges, those that cross rows. */
+static void take_edges(const sm_body *body, int32_t first, int32_t last, const sm_picture *picture, edges *e,
+                       sm_work *work) {
     int32_t top = picture->top, bottom = picture->bottom;
-    const int32_t sign_of[5] = {0, front, -front, 0, 0};
     const int32_t *qx = work->qx, *qy = work->qy;
-    for (int32_t k = 0; k < n; k++) {
-        const int32_t *ends = body->record_vertices + 2 * (size_t)found[k];
-        const int32_t *faces = body->record_faces + 2 * (size_t)found[k];
-        int32_t p = work->places[ends[0]], q = work->places[ends[1]], i = e->n;
-        int32_t sum = sign_of[work->facing[faces[0]]] - sign_of[work->facing[faces[1]]];
+    for (int32_t k = first; k < last; k++) {
+        const int32_t *ends = body->record_vertices + 2 * (size_t)work->found[k];
+        int32_t p = work->places[ends[0]], q = work->places[ends[1]], i = e->n, sum = work->unknown[k];
         int32_t up = qy[p] > qy[q], above = up ? q : p, below = up ? p : q;
         int32_t row = first_row(qy[above]), end = first_row(qy[below]);
         row = row < top ? top : row;
@@ -190,7 +187,7 @@ static void take_edges(const sm_body *body, const int32_t *found, int32_t n, int
         e->row[i] = row;
         e->end[i] = end;
         e->step[i] = up ? sum : -sum; /* downward edges of a positive triangle are its right ones */
-        int32_t drawn = (sum != 0) & (row < end);
+        int32_t drawn = row < end;
         e->top = (drawn & (row < e->top)) ? row : e->top;
         e->bottom = (drawn & (end > e->bottom)) ? end : e->bottom;
         e->n += drawn;
@@ -218,37 +215,6 @@ static void fill_row(const sm_picture *picture, int32_t row, int32_t *slots, int
     }
 }
 
-int32_t sm_draw_contours(const sm_body *body, int32_t segment, const eye *e, const double *a, sm_picture *picture,
-                         sm_work *work) {
-    int32_t start = body->cluster_starts[segment], n = body->cluster_starts[segment + 1] - start;
-    int32_t runs = sm_glance(body->cluster_planes, (size_t)body->clusters, start, n, e, work->runs);
-    if (!runs) return 1;
-    judge(body, segment, e, work);
-    int32_t found = find_edges(body, runs, work);
-    snap_ends(body, segment, a, found, work);
-    settle(body, segment, found, e->front, work);
-
-    edges drawn;
-    drawn.n = drawn.overflow = 0;
-    drawn.top = picture->bottom, drawn.bottom = picture->top;
-    for (int32_t k = 0; k < found; k += CHUNK) {
-        int32_t count = found - k < CHUNK ? found - k : CHUNK;
-        take_edges(body, work->found + k, count, e->front, picture, &drawn, work);
-        cross_rows(&drawn, picture->width, work);
-    }
-    if (drawn.top >= drawn.bottom) return 1;
-    if (drawn.overflow) {
-        memset(work->counts + drawn.top, 0, (size_t)(drawn.bottom - drawn.top));
-        return 0;
-    }
-    open_words(picture, 0, picture->words, drawn.top, drawn.bottom);
-    for (int32_t row = drawn.top; row < drawn.bottom; row++) {
-        fill_row(picture, row, work->slots + row * SM_SLOTS, work->counts[row]);
-        work->counts[row] = 0;
-    }
-    return 1;
-}
-
 int32_t sm_find_contour(const sm_body *body, int32_t segment, const eye *e, const double *a, sm_work *work) {
     int32_t start = body->cluster_starts[segment], n = body->cluster_starts[segment + 1] - start, drawn = 0;
     int32_t runs = sm_glance(body->cluster_planes, (size_t)body->clusters, start, n, e, work->runs);
@@ -266,4 +232,28 @@ int32_t sm_find_contour(const sm_body *body, int32_t segment, const eye *e, cons
         drawn += sum != 0;
     }
     return drawn;
+}
+
+int32_t sm_draw_contours(const sm_body *body, int32_t segment, const eye *e, const double *a, sm_picture *picture,
+                         sm_work *work) {
+    int32_t found = sm_find_contour(body, segment, e, a, work);
+    edges drawn;
+    drawn.n = drawn.overflow = 0;
+    drawn.top = picture->bottom, drawn.bottom = picture->top;
+    for (int32_t k = 0; k < found; k += CHUNK) {
+        int32_t count = found - k < CHUNK ? found - k : CHUNK;
+        take_edges(body, k, k + count, picture, &drawn, work);
+        cross_rows(&drawn, picture->width, work);
+    }
+    if (drawn.top >= drawn.bottom) return 1;
+    if (drawn.overflow) {
+        memset(work->counts + drawn.top, 0, (size_t)(drawn.bottom - drawn.top));
+        return 0;
+    }
+    open_words(picture, 0, picture->words, drawn.top, drawn.bottom);
+    for (int32_t row = drawn.top; row < drawn.bottom; row++) {
+        fill_row(picture, row, work->slots + row * SM_SLOTS, work->counts[row]);
+        work->counts[row] = 0;
+    }
+    return 1;
 }

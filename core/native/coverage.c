@@ -74,7 +74,7 @@ void sm_see(const sm_body *body, const sm_views *views, int32_t segment, sm_work
     const double *sphere = body->spheres + 4 * (size_t)segment, *transform = sm_transform(body, work, 0, segment);
     double radius = sphere[3] * (1.0 + 1e-6) + 1e-9;
     double own = sqrt(sphere[0] * sphere[0] + sphere[1] * sphere[1] + sphere[2] * sphere[2]);
-    size_t lanes = (size_t)(views->views + L - 1) / L * L;
+    size_t lanes = sm_lanes(views);
     for (size_t view = 0; view < lanes; view += L) {
         double m[12][L], centre[3][L];
         for (size_t k = 0; k < 12 && !work->stride; k++)

@@ -81,6 +81,11 @@ typedef struct {
 /* Cuts the scratch up; returns the bytes used (with `base` null: the bytes needed). */
 size_t sm_cut(const sm_body *, const sm_views *, void *base, sm_work *);
 
+/* Views as they lie side by side. */
+static inline size_t sm_lanes(const sm_views *views) {
+    return (size_t)(views->views + SM_LANES - 1) / SM_LANES * SM_LANES;
+}
+
 /* The transform of the joint that carries a segment, as one view sees it. */
 static inline const double *sm_transform(const sm_body *body, const sm_work *work, int32_t view, int32_t segment) {
     return work->transforms + work->stride * (size_t)view + 12 * (size_t)body->segment_joints[segment];

@@ -133,7 +133,7 @@ size_t sm_cut(const sm_body *body, const sm_views *views, void *base, sm_work *w
     work->slots = part(base, &at, height * SM_SLOTS, sizeof(int32_t));
     cut_edges(base, &at, edge_clusters, height, most_words, &work->edges);
     cut_skin(base, &at, vertices, clusters, work);
-    cut_sight(base, &at, (views->views + SM_LANES - 1) / SM_LANES * SM_LANES, &work->sight);
+    cut_sight(base, &at, (int64_t)sm_lanes(views), &work->sight);
     work->pictures = part(base, &at, views->views, sizeof(sm_picture));
     int32_t *ranges = part(base, &at, 2 * most_words * views->views, sizeof(int32_t));
     uint64_t *bits = part(base, &at, views->word_starts[views->views] + 8, sizeof(uint64_t));

@@ -44,7 +44,7 @@ void sm_see(const sm_body *, const sm_views *, int32_t segment, sm_work *);
 
 /* The part of work->sight that one view has; `a` (12) carries joint's metres to homogeneous px. */
 static inline eye sm_eye(const sm_views *views, int32_t view, const sm_sight *sight, double *a) {
-    size_t lanes = (size_t)(views->views + SM_LANES - 1) / SM_LANES * SM_LANES, v = (size_t)view;
+    size_t lanes = sm_lanes(views), v = (size_t)view;
     for (size_t k = 0; k < 12; k++) a[k] = sight->a[k * lanes + v];
     return (eye){{sight->at[0][v], sight->at[1][v], sight->at[2][v]}, sight->reach[v], sight->edge[v],
                  sight->step[v], sight->slack[v], sight->front[v]};
