@@ -3,7 +3,7 @@
 An edge is drawn only if one of its faces shows its front and the other its back. Where every edge
 has both faces, that is all there is to know of a surface, so each edge carries the two planes and
 its ends: sixteen neighbours are judged at once without looking anything up. The margins within
-which a plane does not tell are those of `clusters`; a cluster is skipped where all faces beside its
+which a plane does not tell are those of `faces`; a cluster is skipped where all faces beside its
 edges are known to look the same way.
 """
 
@@ -13,11 +13,9 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from .clusters import face_planes, joint_plane, leaves
-from .records import edge_records
+from .clusters import CLUSTER, cluster_order
+from .faces import Faces, joint_planes
 
-CLUSTER = 16
-"""Edges to a cluster."""
 MOST_VERTICES = 2**15
 """Of a segment whose edges are put into clusters."""
 
@@ -42,11 +40,10 @@ class ClosedEdges:
     connected: bool
 
 
-def closed_edges(vertices: np.ndarray, triangles: np.ndarray) -> ClosedEdges:
-    """Clusters of the edges of triangles (m, 3) with vertices (n, 3)."""
-    records = edge_records(triangles)
-    is_open = not len(records.faces) or (records.faces == len(triangles)).any()
-    if is_open or len(vertices) > MOST_VERTICES:
+def closed_edges(faces: Faces) -> ClosedEdges:
+    """Clusters of the edges of one segment's triangles."""
+    pairs, ends, count = faces.records.faces, faces.records.vertices, len(faces.triangles)
+    if not len(pairs) or (pairs == count).any() or len(faces.vertices) > MOST_VERTICES:
         return ClosedEdges(
             np.zeros((8, 0), np.float32),
             np.zeros((0, 8, CLUSTER), np.float32),
@@ -54,26 +51,21 @@ def closed_edges(vertices: np.ndarray, triangles: np.ndarray) -> ClosedEdges:
             np.zeros((0, CLUSTER, 4), np.int32),
             False,
         )
-    planes = face_planes(vertices, triangles)
-    points = vertices[triangles].astype(float).mean(axis=1)
-    middles = vertices[records.vertices].astype(float).mean(axis=1)
-    radius = max(np.linalg.norm(middles - middles.mean(axis=0), axis=1).max(), 1e-9)
-    normals = planes[:3].T[records.faces].mean(axis=1)
-    groups = leaves(np.concatenate([normals, middles * (0.3 / radius)], axis=1), CLUSTER)
-    cones, sides, corners = [], [], []
-    for group in groups:
-        faces, ends = records.faces[group], records.vertices[group]
-        cones.append(joint_plane(planes, points, np.unique(faces)))
-        rows = np.concatenate([planes[:4, faces[:, 0]], planes[:4, faces[:, 1]]])
-        sides.append(_filled(rows, [0, 0, 0, -1] * 2))
-        apart = triangles[faces].sum(axis=2) - ends.sum(axis=1)[:, None]
-        corners.append(_filled(np.concatenate([ends, apart], axis=1).T, [0] * 4).T.astype(int))
+    middles = faces.vertices[ends].astype(float).mean(axis=1)
+    order = cluster_order(faces.planes[:3].T[pairs].mean(axis=1), middles)
+    pairs, ends = pairs[order], ends[order]
+    sets = np.repeat(np.arange(len(order)) // CLUSTER, 2)
+    clusters = -(-len(order) // CLUSTER)
+    cones = joint_planes(faces.planes, faces.middles, sets, pairs.ravel(), clusters)
+    sides = np.concatenate([faces.planes[:4, pairs[:, k]].T for k in range(2)], axis=1)
+    apart = faces.triangles[pairs].sum(axis=2) - ends.sum(axis=1, keepdims=True)
+    corners = _filled(np.concatenate([ends, apart], axis=1), [0] * 4)
     return ClosedEdges(
-        np.stack(cones, axis=1).astype(np.float32),
-        np.stack(sides).astype(np.float32),
-        np.stack([c[:, 0] + (c[:, 1] << 16) for c in corners]).astype(np.uint32),
-        np.stack(corners).astype(np.int32),
-        _is_connected(records.faces, len(triangles)),
+        cones.astype(np.float32),
+        _filled(sides, [0, 0, 0, -1] * 2).transpose(0, 2, 1).astype(np.float32),
+        (corners[..., 0] + (corners[..., 1] << 16)).astype(np.uint32),
+        corners.astype(np.int32),
+        _is_connected(pairs, count),
     )
 
 
@@ -83,7 +75,7 @@ def _is_connected(pairs: np.ndarray, count: int) -> bool:
     return connected_components(links, directed=False, return_labels=False) == 1
 
 
-def _filled(rows: np.ndarray, fill: list[float]) -> np.ndarray:
-    """Rows of sixteen; edges that are missing have two faces that always show their fronts."""
-    missing = np.repeat(np.array(fill, float)[:, None], CLUSTER - rows.shape[1], axis=1)
-    return np.concatenate([rows, missing], axis=1)
+def _filled(rows: np.ndarray, fill: list[int]) -> np.ndarray:
+    """(K, 16, …) rows; edges that are missing have two faces that always show their fronts."""
+    missing = np.full((-len(rows) % CLUSTER, len(fill)), fill)
+    return np.concatenate([rows, missing]).reshape(-1, CLUSTER, len(fill))

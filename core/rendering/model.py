@@ -9,8 +9,9 @@ from ..body.body import Body
 from ..body.kinematics import rest_joints, skinned_segments
 from ..cameras.camera import Camera
 from ..native.library import BodyRecord, ViewsRecord
-from .clusters import clustered_mesh
-from .edges import closed_edges
+from .clusters import ClusteredMesh, clustered_mesh
+from .edges import ClosedEdges, closed_edges
+from .faces import faces_of
 
 NEAR = 0.01
 """Metres in front of a camera at which surfaces are cut off."""
@@ -47,16 +48,10 @@ def body_record(body: Body, level: int) -> BodyRecord:
     surface, dofs = body.surfaces[level], body.dofs
     joints, segments = len(body.joint_names), len(body.segment_names)
     bounds = zip(pairwise(surface.vertex_starts), pairwise(surface.triangle_starts), strict=True)
-    meshes = [
-        clustered_mesh(surface.vertices[v0:v1], surface.triangles[f0:f1] - v0)
+    pieces = [
+        faces_of(surface.vertices[v0:v1], surface.triangles[f0:f1] - v0)
         for (v0, v1), (f0, f1) in bounds
     ]
-    bounds = zip(pairwise(surface.vertex_starts), pairwise(surface.triangle_starts), strict=True)
-    closed = [
-        closed_edges(surface.vertices[v0:v1], surface.triangles[f0:f1] - v0)
-        for (v0, v1), (f0, f1) in bounds
-    ]
-    cones = np.concatenate([edges.cones for edges in closed], axis=1)
     x, y, z = np.pad(surface.vertices, ((0, SPARE), (0, 0))).T
     arrays = {
         "parents": body.parents,
@@ -67,18 +62,36 @@ def body_record(body: Body, level: int) -> BodyRecord:
         "segment_joints": body.segment_joints,
         "spheres": enclosing_spheres(surface.vertices, surface.vertex_starts),
         "vertex_starts": surface.vertex_starts,
+        **{"x": x, "y": y, "z": z},
+        **_mesh_arrays([clustered_mesh(piece) for piece in pieces]),
+        "skinned": skinned_segments(body, surface).astype(np.uint8),
+        "skin_joints": np.zeros(0, np.int32) if surface.skin is None else surface.skin.joints,
+        "skin_weights": np.zeros(0, np.float32) if surface.skin is None else surface.skin.weights,
+        "rests": rest_joints(body),
+        **_edge_arrays([closed_edges(piece) for piece in pieces]),
+    }
+    lasts = (int(arrays[f"{name}_starts"][-1]) for name in ("cluster", "run", "edge"))
+    counts = joints, len(dofs), segments, len(surface.vertices), *lasts
+    return _filled(BodyRecord(*counts), arrays)
+
+
+def _mesh_arrays(meshes: list[ClusteredMesh]) -> dict[str, np.ndarray]:
+    """The segments' triangles, one after the other."""
+    return {
         "cluster_starts": _running([mesh.cluster_planes.shape[1] for mesh in meshes]),
         "run_starts": _running(np.concatenate([mesh.run_lengths for mesh in meshes])),
-        **{"x": x, "y": y, "z": z},
         "corners": np.concatenate([mesh.corners for mesh in meshes]),
         "face_planes": np.concatenate([mesh.face_planes for mesh in meshes], axis=1),
         "cluster_planes": np.concatenate([mesh.cluster_planes for mesh in meshes], axis=1),
         "record_vertices": np.concatenate([mesh.records.vertices for mesh in meshes]),
         "record_faces": np.concatenate([mesh.records.faces for mesh in meshes]),
-        "skinned": skinned_segments(body, surface).astype(np.uint8),
-        "skin_joints": np.zeros(0, np.int32) if surface.skin is None else surface.skin.joints,
-        "skin_weights": np.zeros(0, np.float32) if surface.skin is None else surface.skin.weights,
-        "rests": rest_joints(body),
+    }
+
+
+def _edge_arrays(closed: list[ClosedEdges]) -> dict[str, np.ndarray]:
+    """The closed segments' edges, one segment's after the other's."""
+    cones = np.concatenate([edges.cones for edges in closed], axis=1)
+    return {
         "connected": np.array([edges.connected for edges in closed], np.uint8),
         "edge_starts": _running([len(edges.sides) for edges in closed]),
         "edge_cones": np.pad(cones.ravel(), (0, 2 * SPARE)),
@@ -86,9 +99,6 @@ def body_record(body: Body, level: int) -> BodyRecord:
         "edge_ends": np.concatenate([edges.ends for edges in closed]),
         "edge_corners": np.concatenate([edges.corners for edges in closed]),
     }
-    lasts = (int(arrays[f"{name}_starts"][-1]) for name in ("cluster", "run", "edge"))
-    counts = joints, len(dofs), segments, len(surface.vertices), *lasts
-    return _filled(BodyRecord(*counts), arrays)
 
 
 def _running(counts: Iterable[int]) -> np.ndarray:

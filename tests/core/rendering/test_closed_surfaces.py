@@ -5,6 +5,7 @@ import pytest
 from silhouette_mocap.core.cameras.camera import Camera
 from silhouette_mocap.core.native.library import load
 from silhouette_mocap.core.rendering.edges import closed_edges
+from silhouette_mocap.core.rendering.faces import faces_of
 from silhouette_mocap.core.rendering.native import NativeEvaluator
 from silhouette_mocap.core.rendering.reference import ReferenceEvaluator
 
@@ -158,13 +159,13 @@ def test_pictures_of_more_rows_than_the_fraction_carries_go_the_general_way(scen
 
 def test_an_edge_without_a_second_face_takes_the_segment_out(scenes):
     vertices, triangles = scenes.sphere(4, 6, 0.2, np.random.default_rng(0))
-    assert len(closed_edges(vertices, triangles).sides) > 0
-    assert len(closed_edges(vertices, triangles[1:]).sides) == 0
+    assert len(closed_edges(faces_of(vertices, triangles)).sides) > 0
+    assert len(closed_edges(faces_of(vertices, triangles[1:])).sides) == 0
 
 
 def test_each_edge_stands_once_between_its_two_faces(scenes):
     vertices, triangles = scenes.sphere(4, 6, 0.2, np.random.default_rng(0))
-    edges = closed_edges(vertices, triangles)
+    edges = closed_edges(faces_of(vertices, triangles))
     real = edges.corners.reshape(-1, 4)[edges.sides[:, :3].any(axis=1).ravel()]
     assert len(real) == 3 * len(triangles) // 2
     faces = {tuple(np.roll(t, k)) for t in triangles.tolist() for k in range(3)}

@@ -4,6 +4,7 @@ from collections import Counter
 
 import numpy as np
 from silhouette_mocap.core.rendering.clusters import CLUSTER, RUN, clustered_mesh
+from silhouette_mocap.core.rendering.faces import faces_of
 from silhouette_mocap.core.rendering.records import edge_records
 
 
@@ -42,7 +43,7 @@ def test_a_closed_mesh_has_one_record_for_every_edge(scenes):
 def test_a_cluster_is_only_passed_over_when_no_record_of_it_is_a_contour(scenes):
     rng = np.random.default_rng(1)
     vertices, triangles = scenes.sphere(18, 36, 1.0, rng, 0.002)
-    mesh = clustered_mesh(vertices.astype(np.float32), triangles)
+    mesh = clustered_mesh(faces_of(vertices.astype(np.float32), triangles))
     normal, offset = mesh.face_planes[:3].T, mesh.face_planes[3]
     ends = np.cumsum(mesh.run_lengths)
     assert (mesh.run_lengths % RUN == 0).all() and len(mesh.corners) % CLUSTER == 0
