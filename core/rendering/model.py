@@ -126,9 +126,14 @@ def clipping_planes(camera: Camera) -> np.ndarray:
 
 
 def optics(camera: Camera) -> np.ndarray:
-    """(5,) the camera's centre in the world, det K, and the largest stretch of K in px."""
+    """(5,) the centre of projection in the world, det K R, and the largest stretch of K in px.
+
+    Of what is projected, as R may be slightly off a rotation: a point in the plane of a face must
+    be seen at its edge.
+    """
+    left, right = camera.projection[:, :3], camera.projection[:, 3]
     scale = np.linalg.norm(camera.matrix[:2, :2], 2)
-    return np.array([*camera.centre, np.linalg.det(camera.matrix), scale])
+    return np.array([*-np.linalg.solve(left, right), np.linalg.det(left), scale])
 
 
 def _side_by_side(values: list[np.ndarray]) -> np.ndarray:

@@ -2,12 +2,14 @@
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 from silhouette_mocap.core.cameras.camera import Camera
 from silhouette_mocap.core.energy.evaluator import WeightMaps
 from silhouette_mocap.core.native.library import load
 from silhouette_mocap.core.rendering.native import NativeEvaluator
 from silhouette_mocap.core.rendering.reference import ReferenceEvaluator
 
+PATHS = [path for path in (1, 3, 4) if path <= load().sm_processor()]
 SIZES = [(64, 48), (65, 30), (63, 33), (1, 40), (40, 1), (30, 70)]
 
 
@@ -113,6 +115,26 @@ def test_a_surface_that_passes_the_camera_is_clipped_and_not_mirrored(scenes):
     np.testing.assert_array_equal(
         picture, ReferenceEvaluator(body, [camera]).silhouettes(body.rest_pose)[0]
     )
+
+
+def test_cameras_slightly_off_a_rotation_are_exact_far_from_the_origin(scenes):
+    rng = np.random.default_rng(4)
+    body = scenes.body_of([scenes.sphere(9, 14, 0.25, rng, 0.02)] * 2, rng)
+    pose = rng.normal(0, 0.1, len(body.dofs))
+    pose[:3] = 1000 / np.sqrt(3)
+    cameras = []
+    for k in range(6):
+        # R^T is off the inverse of R by 8e-5: 8 cm at 1000 m, a tenth of the way to the surface
+        stretch = np.eye(3) + 4e-5 * np.diag(rng.choice([-1, 1], 3))
+        rotation = Rotation.random(random_state=k).as_matrix() @ stretch
+        place = np.column_stack([rotation, [0, 0, 1.2] - rotation @ pose[:3]])
+        cameras.append(Camera("far", (90, 70), [[70, 0, 45], [0, 70, 35], [0, 0, 1]], place))
+    reference = ReferenceEvaluator(body, cameras).silhouettes(pose)
+    for path in PATHS:
+        native = NativeEvaluator(body, cameras, processor=path).silhouettes(pose)
+        for ours, theirs in zip(native, reference, strict=True):
+            np.testing.assert_array_equal(ours, theirs)
+            assert theirs.any()
 
 
 def test_bounds_hold_the_silhouette_and_touch_it(scenes):
