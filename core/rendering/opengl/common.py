@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Generic, TypeVar
 
 import numpy as np
 
@@ -34,6 +35,25 @@ class MaskedMaps:
     windows: np.ndarray
 
 
+@dataclass(frozen=True, eq=False)
+class HeldWeights:
+    """Weight maps as a mode holds them.
+
+    Attributes:
+        masked: the maps as they are.
+    """
+
+    masked: MaskedMaps
+
+    @property
+    def constants(self) -> np.ndarray:
+        """(V,) int64, the energy of an empty rendering, fixed parts included."""
+        return self.masked.constants
+
+
+Held = TypeVar("Held", bound=HeldWeights)
+
+
 def check_version(thread: GlThread, wanted: tuple[int, int]) -> None:
     """Raises a MocapError unless the context is as new as ``wanted``."""
     if thread.version < wanted:
@@ -54,7 +74,7 @@ def check_sizes(thread: GlThread, cameras: Sequence[Camera]) -> Range:
     return reach
 
 
-class OpenGLBase:
+class OpenGLBase(Generic[Held]):
     """A body and cameras, and the thread that draws the one as seen by the others.
 
     Args:
@@ -90,6 +110,23 @@ class OpenGLBase:
         self._placer = Placer(body, cameras, level)
         self._meshes: dict[tuple[int, ...], DeviceMesh] = {}
 
+    def prepared(self, maps: WeightMaps) -> Held:
+        """The maps in the mode's own form."""
+        return self._held(self._whole(maps))
+
+    def masked(
+        self,
+        weights: Held,
+        pose: np.ndarray,
+        moving: Sequence[int],
+        windows: np.ndarray | None = None,
+    ) -> Held:
+        """Weights under which the ``moving`` segments alone give the full energy.
+
+        ``pose`` may be (V, D) as well, one pose per view.
+        """
+        return self._held(self._masked(weights.masked, pose, moving, windows))
+
     def transforms(self, poses: np.ndarray) -> np.ndarray:
         """(N, J, 3, 4) float64 world from joint of poses (N, D)."""
         poses = self._checked(poses)
@@ -120,6 +157,9 @@ class OpenGLBase:
         pictures = self.silhouettes(pose, segments)
         views = self.body, self.level, self.cameras
         return find_outlines(*views, pose, pictures, self._chosen(segments), spacing_px)
+
+    def _held(self, masked: MaskedMaps) -> Held:
+        raise NotImplementedError
 
     def _draw_silhouettes(
         self, pose: np.ndarray, segments: tuple[int, ...]

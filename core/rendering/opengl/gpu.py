@@ -14,9 +14,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ...cameras.camera import Camera
-from ...energy.evaluator import WeightMaps
 from .atlas import Atlas, DeviceTiles
-from .common import MaskedMaps, OpenGLBase, check_sizes, check_version
+from .common import HeldWeights, MaskedMaps, OpenGLBase, check_sizes, check_version
 from .context import shared_thread
 from .gpu_shaders import CANDIDATES
 from .placing import Placement
@@ -30,21 +29,14 @@ _MOST_MATRICES = 1 << 16
 
 
 @dataclass(frozen=True, eq=False)
-class GpuWeights:
+class GpuWeights(HeldWeights):
     """Weight maps on the device.
 
     Attributes:
-        masked: the maps as they are.
         blocks: their tiles, block by block.
     """
 
-    masked: MaskedMaps
     blocks: tuple[DeviceTiles, ...] = field(repr=False)
-
-    @property
-    def constants(self) -> np.ndarray:
-        """(V,) int64, the energy of an empty rendering, fixed parts included."""
-        return self.masked.constants
 
 
 def check_usable(cameras: Sequence[Camera]) -> str:
@@ -60,7 +52,7 @@ def check_usable(cameras: Sequence[Camera]) -> str:
     return thread.renderer
 
 
-class OpenGLEvaluator(OpenGLBase):
+class OpenGLEvaluator(OpenGLBase[GpuWeights]):
     """Energies and silhouettes by a graphics processor; see `energy.evaluator.Evaluator`.
 
     May be called from several threads at once; they take turns. What a call returns depends on
@@ -73,23 +65,6 @@ class OpenGLEvaluator(OpenGLBase):
         super().__init__(*arguments, **keywords)
         self._atlas = self.thread.kept(Atlas)
         self._pictures: tuple[DeviceTiles, ...] = ()
-
-    def prepared(self, maps: WeightMaps) -> GpuWeights:
-        """The maps in the device's memory."""
-        return self._on_device(self._whole(maps))
-
-    def masked(
-        self,
-        weights: GpuWeights,
-        pose: np.ndarray,
-        moving: Sequence[int],
-        windows: np.ndarray | None = None,
-    ) -> GpuWeights:
-        """Weights under which the ``moving`` segments alone give the full energy.
-
-        ``pose`` may be (V, D) as well, one pose per view.
-        """
-        return self._on_device(self._masked(weights.masked, pose, moving, windows))
 
     def energies(
         self, weights: GpuWeights, poses: np.ndarray, segments: Sequence[int] | None = None
@@ -147,7 +122,7 @@ class OpenGLEvaluator(OpenGLBase):
                 found[view] = words[y0:y1, x0:x1] != 0
         return tuple(found[view] for view in range(len(self.cameras)))
 
-    def _on_device(self, masked: MaskedMaps) -> GpuWeights:
+    def _held(self, masked: MaskedMaps) -> GpuWeights:
         return GpuWeights(masked, self.thread.call(self._blocks, masked.windows, masked.maps))
 
     def _blocks(

@@ -19,7 +19,7 @@ import cv2
 import numpy as np
 
 from ...energy.evaluator import WeightMaps
-from .common import MaskedMaps, OpenGLBase
+from .common import HeldWeights, MaskedMaps, OpenGLBase
 from .stencil import PLANES, StencilDrawing, StencilPrograms
 from .tiles import Tiles
 
@@ -50,21 +50,14 @@ class PlaneSet:
 
 
 @dataclass(frozen=True, eq=False)
-class PaperWeights:
+class PaperWeights(HeldWeights):
     """Weight maps as bit planes.
 
     Attributes:
-        masked: the maps as they are.
         sets: their planes; a view without a window is in none.
     """
 
-    masked: MaskedMaps
     sets: tuple[PlaneSet, ...]
-
-    @property
-    def constants(self) -> np.ndarray:
-        """(V,) int64, the energy of an empty rendering, fixed parts included."""
-        return self.masked.constants
 
 
 def plane_sets(masked: MaskedMaps, sizes: np.ndarray) -> tuple[PlaneSet, ...]:
@@ -110,7 +103,7 @@ def bits_by_plane(planes: np.ndarray) -> np.ndarray:
     return counts @ _HAS_PLANE
 
 
-class PaperEvaluator(OpenGLBase):
+class PaperEvaluator(OpenGLBase[PaperWeights]):
     """Energies and silhouettes by the paper's method; see `energy.evaluator.Evaluator`.
 
     Arguments and faults are those of `OpenGLBase`.
@@ -120,25 +113,6 @@ class PaperEvaluator(OpenGLBase):
         super().__init__(*arguments, **keywords)
         self._programs = self.thread.kept(StencilPrograms)
         self._everything = tuple(range(len(self.body.segment_names)))
-
-    def prepared(self, maps: WeightMaps) -> PaperWeights:
-        """The observed silhouettes as bit planes."""
-        masked = self._whole(maps)
-        return PaperWeights(masked, plane_sets(masked, self._sizes))
-
-    def masked(
-        self,
-        weights: PaperWeights,
-        pose: np.ndarray,
-        moving: Sequence[int],
-        windows: np.ndarray | None = None,
-    ) -> PaperWeights:
-        """Weights under which the ``moving`` segments alone give the full energy.
-
-        ``pose`` may be (V, D) as well, one pose per view.
-        """
-        masked = self._masked(weights.masked, pose, moving, windows)
-        return PaperWeights(masked, plane_sets(masked, self._sizes))
 
     def energies(
         self, weights: PaperWeights, poses: np.ndarray, segments: Sequence[int] | None = None
@@ -180,6 +154,9 @@ class PaperEvaluator(OpenGLBase):
             inverted = (left[:height, :width] >> plane & 1).view(bool)
             sums.append(int(weights.sum(where=inverted, dtype=np.int64)))
         return sums
+
+    def _held(self, masked: MaskedMaps) -> PaperWeights:
+        return PaperWeights(masked, plane_sets(masked, self._sizes))
 
     def _draw_silhouettes(
         self, pose: np.ndarray, segments: tuple[int, ...]
