@@ -16,7 +16,7 @@ from .initialisation.first_pose import FirstFit, PoseRequest, initialised
 from .initialisation.plausibility import check_first_fit
 from .motion.overlay import Tile, overlay_picture
 from .progress import FrameFigures, Progress
-from .rendering.choice import EVALUATORS, MakeEvaluator, usable
+from .rendering.choice import BEST, EVALUATORS, MakeEvaluator, usable
 from .rendering.detail import OUTLINE_PX, with_level_for
 from .results.fingerprint import Inputs, fit_inputs
 from .results.journal import SET_ASIDE, UNFINISHED, Journal, Start, set_aside
@@ -74,7 +74,7 @@ class FitRequest:
     @property
     def make_evaluator(self) -> MakeEvaluator:
         """What makes the evaluator of a body and cameras."""
-        return EVALUATORS[self.evaluator or "native"]
+        return EVALUATORS[self.evaluator or BEST]
 
 
 def fit(take: Take, request: FitRequest, progress: Progress) -> FitResult:

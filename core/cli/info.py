@@ -16,7 +16,7 @@ from ..checking.words import (
 from ..files import check_replaceable
 from ..motion.export_request import Exporter
 from ..pipeline import initial_frames
-from ..rendering.choice import EVALUATORS
+from ..rendering.choice import BEST, EVALUATORS
 from ..results.exporting import check_formats
 from .arguments import add_take, taken
 from .console import say
@@ -41,7 +41,7 @@ def run(arguments: argparse.Namespace, exporter: Exporter | None) -> int:
     take = taken(arguments)
     request = CheckRequest(
         initial_frames,
-        EVALUATORS["native"],
+        EVALUATORS[BEST],
         further=(lambda: check_formats(take.exports, exporter),),
         progress=arguments.console,
     )

@@ -41,6 +41,8 @@ EVALUATORS: dict[str, MakeEvaluator] = {
     "opengl": opengl,
     "reference": ReferenceEvaluator,
 }
+BEST = "native"
+"""What is taken where none was asked for, or where that one cannot be used."""
 
 
 def usable(name: str | None, cameras: Sequence[Camera], note: Callable[[str], None]) -> str:
@@ -49,13 +51,13 @@ def usable(name: str | None, cameras: Sequence[Camera], note: Callable[[str], No
     Where OpenGL was asked for and cannot be used, ``note`` is told why, and it is the native one.
     """
     if name != "opengl":
-        return name or "native"
+        return name or BEST
     from .opengl.gpu import check_usable
 
     try:
         renderer = check_usable(cameras)
     except MocapError as error:
         note(f"{error.problem}; the native evaluator goes on")
-        return "native"
+        return BEST
     note(f"OpenGL draws on {renderer}")
     return name
