@@ -1,4 +1,4 @@
-"""Bodies of arbitrary triangles, and cameras round them."""
+"""Bodies of arbitrary triangles, cameras round them, and who draws them."""
 
 import numpy as np
 import pytest
@@ -6,6 +6,9 @@ from scipy.spatial.transform import Rotation
 from silhouette_mocap.core.body.body import Body, Dofs, Surface
 from silhouette_mocap.core.cameras.camera import Camera
 from silhouette_mocap.core.energy.evaluator import WeightMaps
+from silhouette_mocap.core.native.library import load
+from silhouette_mocap.core.rendering.native import NativeEvaluator
+from silhouette_mocap.core.rendering.reference import ReferenceEvaluator
 
 KINDS = [0, 0, 0, 1, 1, 1]
 JOINT_KINDS = [1, 2, 2]
@@ -38,6 +41,13 @@ def sphere(rings: int, around: int, radius: float, rng: np.random.Generator, bum
 def soup(rng: np.random.Generator, vertices: int, triangles: int, size: float = 0.15):
     """Open, overlapping, non-manifold, with triangles that name a vertex twice."""
     return rng.normal(0, size, (vertices, 3)), rng.integers(0, vertices, (triangles, 3))
+
+
+def mixed_pieces(rng: np.random.Generator):
+    """A closed ball, an open one, and two soups that share no sense of orientation."""
+    vertices, triangles = sphere(3, 6, 0.15, rng)
+    open_ball = vertices * 0.7, triangles[::2]
+    return [(vertices, triangles), open_ball, soup(rng, 7, 9), soup(rng, 5, 14)]
 
 
 def body_of(pieces, rng: np.random.Generator) -> Body:
@@ -99,15 +109,52 @@ def maps_for(cameras, largest: int, rng: np.random.Generator) -> WeightMaps:
     return WeightMaps(tuple(maps), rng.integers(0, 1000, len(cameras)))
 
 
+def moving_part(body: Body, count: int, rng: np.random.Generator):
+    """A pose (D,), the segments on the last joint, and poses (count, D) where only these move."""
+    pose = rng.normal(0, 0.2, len(body.dofs))
+    moving = [s for s, joint in enumerate(body.segment_joints) if joint == 3]
+    leaf = np.flatnonzero(body.dofs.joints == 3)
+    poses = np.repeat(pose[None], count, axis=0)
+    poses[:, leaf] += rng.normal(0, 0.5, (count, len(leaf)))
+    return pose, moving, poses
+
+
+def natives(body: Body, cameras) -> list[NativeEvaluator]:
+    """The kernel on every code path of this processor."""
+    paths = [path for path in (1, 3, 4) if path <= load().sm_processor()]
+    return [NativeEvaluator(body, cameras, processor=path) for path in paths]
+
+
+def exact(body: Body, cameras) -> list:
+    """All that must give the same integers: the reference, then the kernel on every code path."""
+    return [ReferenceEvaluator(body, cameras), *natives(body, cameras)]
+
+
+def edge_distances_px(reference: ReferenceEvaluator, pose, view: int, segments, pixels):
+    """(n,) distances of the centres of pixels (n, 2), row and column, to the nearest edge."""
+    corners = np.array(list(reference._snapped_triangles(pose, view, segments))) / 256
+    begin = corners.reshape(-1, 2)
+    along = np.roll(corners, -1, axis=1).reshape(-1, 2) - begin
+    offsets = pixels[:, None, ::-1] - begin
+    squares = np.maximum((along**2).sum(axis=1), 1e-12)
+    nearest = np.clip((offsets * along).sum(axis=2) / squares, 0, 1)
+    return np.linalg.norm(offsets - nearest[..., None] * along, axis=2).min(axis=1)
+
+
 @pytest.fixture
 def scenes():
-    """The makers of bodies, cameras and weights."""
+    """The makers of bodies, cameras, weights and evaluators."""
 
     class Scenes:
         sphere = staticmethod(sphere)
         soup = staticmethod(soup)
+        mixed_pieces = staticmethod(mixed_pieces)
         body_of = staticmethod(body_of)
         camera_at = staticmethod(camera_at)
         maps_for = staticmethod(maps_for)
+        moving_part = staticmethod(moving_part)
+        natives = staticmethod(natives)
+        exact = staticmethod(exact)
+        edge_distances_px = staticmethod(edge_distances_px)
 
     return Scenes

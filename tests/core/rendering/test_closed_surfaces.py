@@ -3,13 +3,10 @@
 import numpy as np
 import pytest
 from silhouette_mocap.core.cameras.camera import Camera
-from silhouette_mocap.core.native.library import load
 from silhouette_mocap.core.rendering.edges import closed_edges
 from silhouette_mocap.core.rendering.faces import faces_of
 from silhouette_mocap.core.rendering.native import NativeEvaluator
 from silhouette_mocap.core.rendering.reference import ReferenceEvaluator
-
-PATHS = [path for path in (1, 3, 4) if path <= load().sm_processor()]
 
 
 def star(points: int, depth: float = 0.75, height: float = 0.1):
@@ -29,14 +26,20 @@ def star(points: int, depth: float = 0.75, height: float = 0.1):
     return vertices, np.array(triangles)
 
 
+def box(size, centre):
+    """A closed box of eight vertices."""
+    corners = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], float)
+    quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    faces = [t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))]
+    return corners * np.array(size) / 2 + centre, np.array(faces)
+
+
 def comb(teeth: int):
     """Closed boxes side by side, far apart, as one segment."""
-    box = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
-    quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
-    faces = np.array([t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))])
-    scale, step = np.array([0.02, 0.4, 0.02]), np.array([0.05, 0.03, 0.0])
-    vertices = [box * scale + step * k - [0.025 * teeth, 0.2, 0] for k in range(teeth)]
-    return np.concatenate(vertices), np.concatenate([faces + 8 * k for k in range(teeth)])
+    first, step = np.array([0.01 - 0.025 * teeth, 0, 0.01]), np.array([0.05, 0.03, 0])
+    boxes = [box((0.02, 0.4, 0.02), first + step * k) for k in range(teeth)]
+    faces = [triangles + 8 * k for k, (_, triangles) in enumerate(boxes)]
+    return np.concatenate([vertices for vertices, _ in boxes]), np.concatenate(faces)
 
 
 def above(distance: float, focal: float, size) -> Camera:
@@ -56,8 +59,7 @@ def check_equal(scenes, pieces, cameras, seed: int, largest: int = 1, spread: fl
     poses[0] = 0
     reference = ReferenceEvaluator(body, cameras)
     wanted = reference.energies(reference.prepared(maps), poses)
-    for path in PATHS:
-        native = NativeEvaluator(body, cameras, processor=path)
+    for native in scenes.natives(body, cameras):
         assert all(np.diff(native._body.arrays["edge_starts"]) > 0), "expected closed segments"
         np.testing.assert_array_equal(native.energies(native.prepared(maps), poses), wanted)
 
@@ -73,14 +75,6 @@ def test_pieces_of_one_segment_need_not_hang_together(scenes, teeth):
     rng = np.random.default_rng(1)
     cameras = [above(1.5, 90, (70, 66)), scenes.camera_at(1.2, 60, (65, 40), rng)]
     check_equal(scenes, [comb(teeth)], cameras, teeth)
-
-
-def box(size, centre):
-    """A closed box of eight vertices."""
-    corners = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], float)
-    quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
-    faces = [t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))]
-    return corners * np.array(size) / 2 + centre, np.array(faces)
 
 
 def joined(one, two):
@@ -126,8 +120,7 @@ def test_edges_through_the_centres_of_pixels_leave_them_to_the_right_hand_side(s
     shift = np.zeros(len(body.dofs))
     shift[:3] = -body.offsets[0]
     reference = ReferenceEvaluator(body, cameras)
-    for path in PATHS:
-        native = NativeEvaluator(body, cameras, processor=path)
+    for native in scenes.natives(body, cameras):
         for ours, theirs in zip(
             native.silhouettes(shift), reference.silhouettes(shift), strict=True
         ):

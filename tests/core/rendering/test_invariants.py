@@ -7,21 +7,12 @@ import pytest
 from scipy.spatial.transform import Rotation
 from silhouette_mocap.core.cameras.camera import Camera
 from silhouette_mocap.core.energy.evaluator import WeightMaps
-from silhouette_mocap.core.native.library import load
-from silhouette_mocap.core.rendering.native import NativeEvaluator
 from silhouette_mocap.core.rendering.reference import ReferenceEvaluator
 
-PATHS = [path for path in (1, 3, 4) if path <= load().sm_processor()]
 SIZES = [(64, 48), (65, 30), (30, 70), (1, 40), (130, 9)]
 NEAR_AN_EDGE_PX = 2 / 256
 HALF_TURN = np.diag([-1.0, -1, 1])
 QUARTER_TURN = np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]])
-
-
-def evaluators(body, cameras):
-    """The reference, and the kernel on every code path of this processor."""
-    native = [NativeEvaluator(body, cameras, processor=path) for path in PATHS]
-    return [ReferenceEvaluator(body, cameras), *native]
 
 
 def make_body(scenes, rng):
@@ -72,7 +63,7 @@ def test_the_moving_part_alone_gives_the_full_energy_in_images_and_windows(scene
         [[0.03], [3], [0.5], [0.1]], (2, 1)
     )
     maps = scenes.maps_for(cameras, largest, rng)
-    for evaluator in evaluators(body, cameras):
+    for evaluator in scenes.exact(body, cameras):
         count = 2 if isinstance(evaluator, ReferenceEvaluator) else 9
         some = poses[-count:]
         weights = evaluator.prepared(maps)
@@ -92,7 +83,7 @@ def test_a_part_may_be_fixed_otherwise_in_every_view(scenes):
     poses = np.repeat(rng.normal(0, 0.3, (1, len(cameras), len(body.dofs))), 3, axis=0)
     poses[..., leaf] += rng.normal(0, 0.5, (3, len(cameras), len(leaf)))
     maps = scenes.maps_for(cameras, 1, rng)
-    for evaluator in evaluators(body, cameras):
+    for evaluator in scenes.exact(body, cameras):
         weights = evaluator.prepared(maps)
         masked = evaluator.masked(weights, poses[0], [3])
         full = evaluator.energies(weights, poses)
@@ -125,7 +116,7 @@ def both_worlds(scenes, rng, turn, shift):
     offsets[0] += shift
     other = replace(other, offsets=offsets)
     placed = [moved(camera, turn, shift) for camera in cameras]
-    return evaluators(body, cameras), evaluators(other, placed)
+    return scenes.exact(body, cameras), scenes.exact(other, placed)
 
 
 @pytest.mark.parametrize(
@@ -145,31 +136,20 @@ def test_even_turns_and_shifts_of_world_and_cameras_change_no_pixel(scenes, turn
         assert np.ptp(energies, axis=0).any()
 
 
-def edge_distances_px(reference, pose, view, pixels):
-    """(n,) distances of the centres of pixels (n, 2), row and column, to the nearest edge."""
-    segments = range(len(reference.body.segment_names))
-    corners = np.array(list(reference._snapped_triangles(pose, view, segments))) / 256
-    begin = corners.reshape(-1, 2)
-    along = np.roll(corners, -1, axis=1).reshape(-1, 2) - begin
-    offsets = pixels[:, None, ::-1] - begin
-    squares = np.maximum((along**2).sum(axis=1), 1e-12)
-    nearest = np.clip((offsets * along).sum(axis=2) / squares, 0, 1)
-    return np.linalg.norm(offsets - nearest[..., None] * along, axis=2).min(axis=1)
-
-
 @pytest.mark.parametrize("seed", range(3))
 def test_any_motion_of_world_and_cameras_changes_pixels_on_an_edge_at_most(scenes, seed):
     rng = np.random.default_rng([3, seed])
     turn = Rotation.random(random_state=seed).as_matrix()
     here, there = both_worlds(scenes, rng, turn, rng.normal(0, 5, 3))
     pose = rng.normal(0, 0.3, len(here[0].body.dofs))
+    segments = range(len(here[0].body.segment_names))
     for ours, theirs in zip(here, there, strict=True):
         pairs = zip(ours.silhouettes(pose), theirs.silhouettes(pose), strict=True)
         for view, (picture, twin) in enumerate(pairs):
             differing = np.argwhere(picture != twin)
             assert len(differing) <= 3
             if len(differing):  # vertices are kept in single precision: one step to either side
-                distances = edge_distances_px(here[0], pose, view, differing)
+                distances = scenes.edge_distances_px(here[0], pose, view, segments, differing)
                 assert distances.max() < NEAR_AN_EDGE_PX
 
 
@@ -181,7 +161,7 @@ def test_cameras_in_another_order_give_their_energies_in_that_order(scenes):
     order = rng.permutation(len(cameras))
     mixed = WeightMaps(tuple(maps.maps[v] for v in order), maps.constants[order])
     poses = rng.normal(0, 0.3, (2, len(cameras), len(body.dofs)))
-    pairs = evaluators(body, cameras), evaluators(body, [cameras[v] for v in order])
+    pairs = scenes.exact(body, cameras), scenes.exact(body, [cameras[v] for v in order])
     for ours, theirs in zip(*pairs, strict=True):
         weights, others = ours.prepared(maps), theirs.prepared(mixed)
         for batch, permuted in ((poses[:1], poses[:1, order]), (poses[:1, 0], poses[:1, 0])):
@@ -201,7 +181,7 @@ def test_a_picture_is_the_middle_of_a_larger_one(scenes, margin):
         matrix = camera.matrix + np.array([[0, 0, margin], [0, 0, margin], [0, 0, 0]])
         size = camera.size[0] + 2 * margin, camera.size[1] + 2 * margin
         large.append(Camera("large", size, matrix, camera.camera_from_world))
-    pairs = evaluators(body, small), evaluators(body, large)
+    pairs = scenes.exact(body, small), scenes.exact(body, large)
     pose = rng.normal(0, 0.4, len(body.dofs))
     for ours, theirs in zip(*pairs, strict=True):
         wide = theirs.silhouettes(pose)

@@ -5,25 +5,20 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from silhouette_mocap.core.cameras.camera import Camera
-from silhouette_mocap.core.native.library import load
 from silhouette_mocap.core.rendering.native import NativeEvaluator
 from silhouette_mocap.core.rendering.opengl.gpu import OpenGLEvaluator
 from silhouette_mocap.core.rendering.opengl.paper import PaperEvaluator
-from silhouette_mocap.core.rendering.reference import ReferenceEvaluator
 
-PATHS = [path for path in (1, 3, 4) if path <= load().sm_processor()]
 SIZE = (72, 50)
 
 
-def exact(body, cameras):
-    """The reference, and the kernel on every code path of this processor."""
-    native = [NativeEvaluator(body, cameras, processor=path) for path in PATHS]
-    return [ReferenceEvaluator(body, cameras), *native]
-
-
-def everyone(body, cameras):
-    """These, and both modes of OpenGL."""
-    return [*exact(body, cameras), PaperEvaluator(body, cameras), OpenGLEvaluator(body, cameras)]
+def everyone(scenes, body, cameras):
+    """The reference, the kernel on every code path, and both modes of OpenGL."""
+    return [
+        *scenes.exact(body, cameras),
+        PaperEvaluator(body, cameras),
+        OpenGLEvaluator(body, cameras),
+    ]
 
 
 def still(scenes, vertices, triangles):
@@ -62,7 +57,7 @@ def test_a_camera_inside_a_segment_sees_nothing_else(scenes):
     vertices, triangles = scenes.sphere(6, 9, 0.3, np.random.default_rng(0))
     body = still(scenes, vertices, triangles)
     for place in (0.0, 0.1):
-        for picture in pictures_of(everyone(body, [front(place)])):
+        for picture in pictures_of(everyone(scenes, body, [front(place)])):
             assert picture.all()
 
 
@@ -71,7 +66,7 @@ def test_what_lies_behind_a_camera_weighs_nothing(scenes):
     body = still(scenes, *scenes.sphere(4, 7, 0.3, rng))
     cameras = [front(-1.0), front(-0.35)]
     maps = scenes.maps_for(cameras, 300, rng)
-    for evaluator in everyone(body, cameras):
+    for evaluator in everyone(scenes, body, cameras):
         energies = evaluator.energies(evaluator.prepared(maps), body.rest_pose[None])
         np.testing.assert_array_equal(energies[0], maps.constants)
         assert not evaluator.silhouettes(body.rest_pose)[0].any()
@@ -79,14 +74,14 @@ def test_what_lies_behind_a_camera_weighs_nothing(scenes):
 
 def test_a_triangle_over_all_borders_fills_the_picture_and_one_over_some_its_part(scenes):
     corners = [[-50, -50, 0], [50, -50, 0], [0, 90, 0]]
-    for picture in pictures_of(everyone(still(scenes, corners, [[0, 1, 2]]), [front(1.0)])):
+    for picture in pictures_of(everyone(scenes, still(scenes, corners, [[0, 1, 2]]), [front(1.0)])):
         assert picture.all()
     # left of x = 0 m, that is of column 36, and above y = 0.125 m, row 33
     corners = [[-9, 0.125, 0], [0, 0.125, 0], [0, -9, 0], [-9, -9, 0]]
     body = still(scenes, corners, [[0, 1, 2], [2, 3, 0]])
     expected = np.zeros(SIZE[::-1], bool)
     expected[:33, :36] = True
-    for picture in pictures_of(everyone(body, [front(1.0)])):
+    for picture in pictures_of(everyone(scenes, body, [front(1.0)])):
         np.testing.assert_array_equal(picture, expected)
 
 
@@ -95,7 +90,7 @@ def test_triangles_that_pass_the_camera_and_all_borders_are_the_same_for_all(sce
     covered = 0
     for size in (0.3, 3.0, 300.0):
         body = still(scenes, *scenes.soup(rng, 8, 6, size))
-        reference, *native = exact(body, [front(0.2), front(0.0, 20), front(2.0, 900)])
+        reference, *native = scenes.exact(body, [front(0.2), front(0.0, 20), front(2.0, 900)])
         for pose in rng.normal(0, 0.5, (2, len(body.dofs))):
             wanted = reference.silhouettes(pose)
             for evaluator in native:
@@ -151,7 +146,7 @@ def test_the_same_surface_written_otherwise_is_the_same_silhouette(scenes, how, 
     other = still(scenes, *spoilt(vertices, triangles, how, rng))
     for pose in rng.normal(0, 0.2, (2, len(plain.dofs))):
         wanted = NativeEvaluator(plain, cameras).silhouettes(pose)
-        for evaluator in exact(other, cameras):
+        for evaluator in scenes.exact(other, cameras):
             for picture, twin in zip(evaluator.silhouettes(pose), wanted, strict=True):
                 np.testing.assert_array_equal(picture, twin)
         assert wanted[0].any()
@@ -177,7 +172,7 @@ def test_a_t_junction_leaves_no_gap_and_covers_no_more(scenes):
     expected = np.zeros(SIZE[::-1], bool)
     expected[9:41, 20:52] = True  # 64 px to the metre: 32 x 32 px
     for body in (whole, split):
-        for picture in pictures_of(everyone(body, [front(1.0)])):
+        for picture in pictures_of(everyone(scenes, body, [front(1.0)])):
             np.testing.assert_array_equal(picture, expected)
 
 
@@ -187,15 +182,15 @@ def test_a_box_on_pixel_centres_covers_its_left_and_top_but_not_its_right_and_bo
     faces = np.array([t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))])
     expected = np.zeros(SIZE[::-1], bool)
     expected[9:41, 20:52] = True  # the near side, 64 px to the metre
-    for picture in pictures_of(everyone(still(scenes, corners, faces), [front(1.0)])):
+    for picture in pictures_of(everyone(scenes, still(scenes, corners, faces), [front(1.0)])):
         np.testing.assert_array_equal(picture, expected)
 
 
 def test_an_open_cylinder_is_seen_through_and_a_closed_one_is_not(scenes):
     pipe, can = (still(scenes, *cylinder(24, 0.25, 0.3, caps)) for caps in (False, True))
     for hollow, full in zip(
-        pictures_of(everyone(pipe, [front(1.0)])),
-        pictures_of(everyone(can, [front(1.0)])),
+        pictures_of(everyone(scenes, pipe, [front(1.0)])),
+        pictures_of(everyone(scenes, can, [front(1.0)])),
         strict=True,
     ):
         # the far end's radius is 64 * 0.25 / 1.3 = 12.3 px, the near one's 64 * 0.25 / 0.7 = 22.9
@@ -209,7 +204,7 @@ def test_open_cylinders_are_the_same_for_all_from_every_side_and_from_inside(sce
     rng = np.random.default_rng(5)
     body = still(scenes, *cylinder(17, 0.25, 0.4))
     cameras = [front(1.0), front(0.1), front(0.6, 30), front(5.0, 300)]
-    reference, *native = exact(body, cameras)
+    reference, *native = scenes.exact(body, cameras)
     for pose in rng.normal(0, 0.8, (4, len(body.dofs))) * np.repeat([0.1, 1], [3, 12]):
         wanted = reference.silhouettes(pose)
         for evaluator in native:
@@ -222,7 +217,7 @@ def test_outlines_of_triangles_apart_have_all_their_edges(scenes):
     starts = rng.normal(0, 0.3, (50, 1, 3))
     vertices = (starts + rng.normal(0, 0.04, (50, 3, 3))).reshape(-1, 3)
     body = still(scenes, vertices, np.arange(150).reshape(-1, 3))
-    reference, *native = exact(body, [front(2.0, 300, (300, 200))])
+    reference, *native = scenes.exact(body, [front(2.0, 300, (300, 200))])
     wanted = reference.outline(body.rest_pose)[0]
     assert len(wanted.px) > 500
     for evaluator in native:

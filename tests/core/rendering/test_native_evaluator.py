@@ -5,23 +5,10 @@ import pytest
 from scipy.spatial.transform import Rotation
 from silhouette_mocap.core.cameras.camera import Camera
 from silhouette_mocap.core.energy.evaluator import WeightMaps
-from silhouette_mocap.core.native.library import load
 from silhouette_mocap.core.rendering.native import NativeEvaluator
 from silhouette_mocap.core.rendering.reference import ReferenceEvaluator
 
-PATHS = [path for path in (1, 3, 4) if path <= load().sm_processor()]
 SIZES = [(64, 48), (65, 30), (63, 33), (1, 40), (40, 1), (30, 70)]
-
-
-def make_pieces(scenes, rng):
-    """A closed ball, an open one, and two soups that share no sense of orientation."""
-    vertices, triangles = scenes.sphere(3, 6, 0.15, rng)
-    return [
-        (vertices, triangles),
-        (vertices * 0.7, triangles[::2]),
-        scenes.soup(rng, 7, 9),
-        scenes.soup(rng, 5, 14),
-    ]
 
 
 def check_equal(native, reference, maps, poses, parts):
@@ -37,7 +24,7 @@ def check_equal(native, reference, maps, poses, parts):
 @pytest.mark.parametrize("seed", range(20))
 def test_kernel_and_reference_agree_on_every_pose_camera_and_part(scenes, seed):
     rng = np.random.default_rng(seed)
-    body = scenes.body_of(make_pieces(scenes, rng), rng)
+    body = scenes.body_of(scenes.mixed_pieces(rng), rng)
     cameras = [
         scenes.camera_at(
             rng.choice([0.0, 0.15, 0.4, 0.8, 2.0]), rng.choice([8, 40, 200]), size, rng
@@ -130,9 +117,8 @@ def test_cameras_slightly_off_a_rotation_are_exact_far_from_the_origin(scenes):
         place = np.column_stack([rotation, [0, 0, 1.2] - rotation @ pose[:3]])
         cameras.append(Camera("far", (90, 70), [[70, 0, 45], [0, 70, 35], [0, 0, 1]], place))
     reference = ReferenceEvaluator(body, cameras).silhouettes(pose)
-    for path in PATHS:
-        native = NativeEvaluator(body, cameras, processor=path).silhouettes(pose)
-        for ours, theirs in zip(native, reference, strict=True):
+    for native in scenes.natives(body, cameras):
+        for ours, theirs in zip(native.silhouettes(pose), reference, strict=True):
             np.testing.assert_array_equal(ours, theirs)
             assert theirs.any()
 
@@ -166,15 +152,11 @@ def test_snapped_vertices_lie_within_half_a_step_of_the_projection(scenes):
 @pytest.mark.parametrize("largest", [1, 500])
 def test_masked_weights_give_the_full_energy_from_the_moving_part_alone(scenes, largest):
     rng = np.random.default_rng(9)
-    body = scenes.body_of(make_pieces(scenes, rng), rng)
+    body = scenes.body_of(scenes.mixed_pieces(rng), rng)
     cameras = [scenes.camera_at(1.5, 40, size, rng) for size in SIZES]
     native = NativeEvaluator(body, cameras)
     weights = native.prepared(scenes.maps_for(cameras, largest, rng))
-    pose = rng.normal(0, 0.2, len(body.dofs))
-    moving = [s for s, joint in enumerate(body.segment_joints) if joint == 3]
-    leaf = np.flatnonzero(body.dofs.joints == 3)
-    poses = np.repeat(pose[None], 8, axis=0)
-    poses[:, leaf] += rng.normal(0, 0.5, (8, len(leaf)))
+    pose, moving, poses = scenes.moving_part(body, 8, rng)
     masked = native.masked(weights, pose, moving)
     np.testing.assert_array_equal(
         native.energies(masked, poses, moving), native.energies(weights, poses)
@@ -207,7 +189,7 @@ def test_windows_change_nothing_for_a_part_inside_and_drop_weights_outside(scene
 
 def test_poses_per_view_are_seen_by_their_own_view_only(scenes):
     rng = np.random.default_rng(11)
-    body = scenes.body_of(make_pieces(scenes, rng), rng)
+    body = scenes.body_of(scenes.mixed_pieces(rng), rng)
     cameras = [scenes.camera_at(1.5, 40, size, rng) for size in SIZES[:3]]
     native = NativeEvaluator(body, cameras)
     weights = native.prepared(scenes.maps_for(cameras, 1, rng))
@@ -222,22 +204,22 @@ def test_poses_per_view_are_seen_by_their_own_view_only(scenes):
 
 def test_threads_and_code_paths_give_the_same_integers(scenes):
     rng = np.random.default_rng(12)
-    body = scenes.body_of([*make_pieces(scenes, rng), scenes.sphere(9, 12, 0.2, rng)], rng)
+    body = scenes.body_of([*scenes.mixed_pieces(rng), scenes.sphere(9, 12, 0.2, rng)], rng)
     cameras = [scenes.camera_at(1.5, 60, size, rng) for size in SIZES]
     maps = scenes.maps_for(cameras, 2, rng)
     poses = rng.normal(0, 0.3, (23, len(body.dofs)))
-    paths = [p for p in (1, 3, 4) if p <= load().sm_processor()]
-    results = []
-    for threads, path in [(1, None), (3, None), *((1, path) for path in paths)]:
-        evaluator = NativeEvaluator(body, cameras, threads=threads, processor=path)
-        results.append(evaluator.energies(evaluator.prepared(maps), poses))
+    spread = [NativeEvaluator(body, cameras, threads=threads) for threads in (1, 3)]
+    results = [
+        evaluator.energies(evaluator.prepared(maps), poses)
+        for evaluator in (*spread, *scenes.natives(body, cameras))
+    ]
     for result in results[1:]:
         np.testing.assert_array_equal(result, results[0])
 
 
 def test_batches_are_the_single_candidates_one_by_one(scenes):
     rng = np.random.default_rng(13)
-    body = scenes.body_of(make_pieces(scenes, rng), rng)
+    body = scenes.body_of(scenes.mixed_pieces(rng), rng)
     cameras = [scenes.camera_at(1.5, 40, (64, 48), rng)]
     native = NativeEvaluator(body, cameras)
     weights = native.prepared(scenes.maps_for(cameras, 1, rng))
@@ -249,7 +231,7 @@ def test_batches_are_the_single_candidates_one_by_one(scenes):
 
 def test_poses_of_nan_cover_nothing(scenes):
     rng = np.random.default_rng(14)
-    body = scenes.body_of(make_pieces(scenes, rng), rng)
+    body = scenes.body_of(scenes.mixed_pieces(rng), rng)
     cameras = [scenes.camera_at(1.5, 40, (64, 48), rng)]
     native = NativeEvaluator(body, cameras)
     maps = scenes.maps_for(cameras, 1, rng)
@@ -263,7 +245,7 @@ def test_poses_of_nan_cover_nothing(scenes):
 
 def test_programmers_mistakes_are_named(scenes):
     rng = np.random.default_rng(15)
-    body = scenes.body_of(make_pieces(scenes, rng), rng)
+    body = scenes.body_of(scenes.mixed_pieces(rng), rng)
     camera = scenes.camera_at(1.5, 40, (64, 48), rng)
     native = NativeEvaluator(body, [camera])
     maps = scenes.maps_for([camera], 1, rng)

@@ -22,17 +22,6 @@ SIZES = [(64, 48), (65, 30), (64, 48), (1, 40), (40, 1), (30, 70)]
 NEAR_AN_EDGE_PX = 4 / 256
 
 
-def make_pieces(scenes, rng):
-    """A closed ball, an open one, and two soups that share no sense of orientation."""
-    vertices, triangles = scenes.sphere(3, 6, 0.15, rng)
-    return [
-        (vertices, triangles),
-        (vertices * 0.7, triangles[::2]),
-        scenes.soup(rng, 7, 9),
-        scenes.soup(rng, 5, 14),
-    ]
-
-
 def make_cameras(scenes, rng, sizes=SIZES):
     """Some of them in the middle of the body, some far away."""
     return [
@@ -41,17 +30,6 @@ def make_cameras(scenes, rng, sizes=SIZES):
         )
         for size in sizes
     ]
-
-
-def edge_distance_px(reference, pose, view, segments, pixels):
-    """(n,) distances of the centres of pixels (n, 2), row and column, to the nearest edge."""
-    corners = np.array(list(reference._snapped_triangles(pose, view, segments))) / 256
-    begin = corners.reshape(-1, 2)
-    along = np.roll(corners, -1, axis=1).reshape(-1, 2) - begin
-    offsets = pixels[:, None, ::-1] - begin
-    squares = np.maximum((along**2).sum(axis=1), 1e-12)
-    nearest = np.clip((offsets * along).sum(axis=2) / squares, 0, 1)
-    return np.linalg.norm(offsets - nearest[..., None] * along, axis=2).min(axis=1)
 
 
 def weighed(maps, pictures):
@@ -63,7 +41,7 @@ def weighed(maps, pictures):
 @pytest.mark.parametrize("seed", range(4))
 def test_both_modes_agree_with_the_reference_but_for_pixels_on_an_edge(scenes, seed):
     rng = np.random.default_rng(seed)
-    body = scenes.body_of(make_pieces(scenes, rng), rng)
+    body = scenes.body_of(scenes.mixed_pieces(rng), rng)
     cameras = make_cameras(scenes, rng)
     reference = ReferenceEvaluator(body, cameras)
     maps = scenes.maps_for(cameras, [1, 300][seed % 2], rng)
@@ -82,7 +60,7 @@ def test_both_modes_agree_with_the_reference_but_for_pixels_on_an_edge(scenes, s
                 for v, picture in enumerate(drawn):
                     differing = np.argwhere(picture != pictures[n][k][v])
                     if len(differing):
-                        distances = edge_distance_px(reference, pose, v, part, differing)
+                        distances = scenes.edge_distances_px(reference, pose, v, part, differing)
                         assert distances.max() < NEAR_AN_EDGE_PX
             cases += energies.size
     assert cases == 144  # 4 seeds make 576
@@ -92,15 +70,11 @@ def test_both_modes_agree_with_the_reference_but_for_pixels_on_an_edge(scenes, s
 @pytest.mark.parametrize("largest", [1, 500])
 def test_the_moving_part_alone_gives_the_full_energy_to_the_unit(scenes, mode, largest):
     rng = np.random.default_rng(9)
-    body = scenes.body_of(make_pieces(scenes, rng), rng)
+    body = scenes.body_of(scenes.mixed_pieces(rng), rng)
     cameras = [scenes.camera_at(1.5, 40, size, rng) for size in SIZES]
     evaluator = mode(body, cameras)
     weights = evaluator.prepared(scenes.maps_for(cameras, largest, rng))
-    pose = rng.normal(0, 0.2, len(body.dofs))
-    moving = [s for s, joint in enumerate(body.segment_joints) if joint == 3]
-    leaf = np.flatnonzero(body.dofs.joints == 3)
-    poses = np.repeat(pose[None], 40, axis=0)
-    poses[:, leaf] += rng.normal(0, 0.5, (40, len(leaf)))
+    pose, moving, poses = scenes.moving_part(body, 40, rng)
     masked = evaluator.masked(weights, pose, moving)
     full = evaluator.energies(weights, poses)
     np.testing.assert_array_equal(evaluator.energies(masked, poses, moving), full)
@@ -139,7 +113,7 @@ def test_windows_change_nothing_for_a_part_inside_and_drop_weights_outside(scene
 @pytest.mark.parametrize("mode", MODES)
 def test_a_candidate_has_its_energy_wherever_it_stands(scenes, mode):
     rng = np.random.default_rng(11)
-    body = scenes.body_of(make_pieces(scenes, rng), rng)
+    body = scenes.body_of(scenes.mixed_pieces(rng), rng)
     cameras = make_cameras(scenes, rng, SIZES * 3)  # more than two stencil buffers hold
     evaluator = mode(body, cameras)
     weights = evaluator.prepared(scenes.maps_for(cameras, 1, rng))
@@ -154,7 +128,7 @@ def test_a_candidate_has_its_energy_wherever_it_stands(scenes, mode):
 @pytest.mark.parametrize("mode", MODES)
 def test_views_are_kept_apart(scenes, mode):
     rng = np.random.default_rng(12)
-    body = scenes.body_of(make_pieces(scenes, rng), rng)
+    body = scenes.body_of(scenes.mixed_pieces(rng), rng)
     cameras = make_cameras(scenes, rng, [(50, 40)] * 10 + SIZES)  # a stencil buffer has eight bits
     maps = scenes.maps_for(cameras, 1, rng)
     evaluator = mode(body, cameras)
@@ -206,7 +180,7 @@ def test_a_surface_that_passes_the_camera_is_cut_and_not_mirrored(scenes, mode):
 
 def test_blocks_and_batches_that_do_not_fit_at_once_change_nothing(scenes, monkeypatch):
     rng = np.random.default_rng(14)
-    body = scenes.body_of(make_pieces(scenes, rng), rng)
+    body = scenes.body_of(scenes.mixed_pieces(rng), rng)
     cameras = make_cameras(scenes, rng)
     maps = scenes.maps_for(cameras, 300, rng)
     poses = rng.normal(0, 0.4, (70, len(body.dofs)))
@@ -225,7 +199,7 @@ def test_blocks_and_batches_that_do_not_fit_at_once_change_nothing(scenes, monke
 
 def test_threads_may_call_both_modes_at_once(scenes):
     rng = np.random.default_rng(15)
-    body = scenes.body_of(make_pieces(scenes, rng), rng)
+    body = scenes.body_of(scenes.mixed_pieces(rng), rng)
     cameras = make_cameras(scenes, rng)
     maps = scenes.maps_for(cameras, 1, rng)
     poses = rng.normal(0, 0.4, (24, 4, len(body.dofs)))
@@ -245,7 +219,7 @@ def test_threads_may_call_both_modes_at_once(scenes):
 @pytest.mark.parametrize("per_view", [False, True])
 def test_bounds_and_transforms_are_those_of_the_reference(scenes, per_view):
     rng = np.random.default_rng(16)
-    body = scenes.body_of(make_pieces(scenes, rng), rng)
+    body = scenes.body_of(scenes.mixed_pieces(rng), rng)
     cameras = make_cameras(scenes, rng)
     evaluator, reference = OpenGLEvaluator(body, cameras), ReferenceEvaluator(body, cameras)
     shape = (5, len(cameras), len(body.dofs)) if per_view else (5, len(body.dofs))
@@ -262,7 +236,7 @@ def test_bounds_and_transforms_are_those_of_the_reference(scenes, per_view):
 
 def test_weights_that_nobody_holds_any_more_leave_the_device(scenes):
     rng = np.random.default_rng(17)
-    body = scenes.body_of(make_pieces(scenes, rng), rng)
+    body = scenes.body_of(scenes.mixed_pieces(rng), rng)
     cameras = make_cameras(scenes, rng)
     evaluator = OpenGLEvaluator(body, cameras)
     weights = evaluator.prepared(scenes.maps_for(cameras, 1, rng))
@@ -277,7 +251,7 @@ def test_weights_that_nobody_holds_any_more_leave_the_device(scenes):
 @pytest.mark.parametrize("mode", MODES)
 def test_what_cannot_be_drawn_is_refused(scenes, mode):
     rng = np.random.default_rng(18)
-    body = scenes.body_of(make_pieces(scenes, rng), rng)
+    body = scenes.body_of(scenes.mixed_pieces(rng), rng)
     camera = scenes.camera_at(2.0, 60, (40, 30), rng)
     lens = Camera("lens", (40, 30), camera.matrix, camera.camera_from_world, [0.1, 0, 0, 0])
     with pytest.raises(ValueError, match="pinhole"):

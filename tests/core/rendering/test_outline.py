@@ -5,11 +5,8 @@ import numpy as np
 import pytest
 from silhouette_mocap.core.body.templates import template
 from silhouette_mocap.core.cameras.presets import studio_t
-from silhouette_mocap.core.native.library import load
 from silhouette_mocap.core.rendering.native import NativeEvaluator
 from silhouette_mocap.core.rendering.reference import ReferenceEvaluator
-
-PATHS = [path for path in (1, 3, 4) if path <= load().sm_processor()]
 
 
 def rows_of(outline) -> np.ndarray:
@@ -36,8 +33,8 @@ def test_native_and_reference_find_the_same_points(scenes, seed):
     reference, points = ReferenceEvaluator(body, cameras), 0
     for chosen, place, spacing in ((None, pose, 1.0), ([0, 2], pose, 0.3), ([1], per_view, 2.5)):
         wanted = reference.outline(place, chosen, spacing)
-        for path in PATHS:
-            found = NativeEvaluator(body, cameras, processor=path).outline(place, chosen, spacing)
+        for native in scenes.natives(body, cameras):
+            found = native.outline(place, chosen, spacing)
             for ours, theirs in zip(found, wanted, strict=True):
                 np.testing.assert_allclose(rows_of(ours), rows_of(theirs), atol=2e-9)
                 points += len(ours.px)

@@ -10,12 +10,9 @@ from silhouette_mocap.core.body.kinematics import joint_transforms, rest_joints,
 from silhouette_mocap.core.body.templates import template
 from silhouette_mocap.core.cameras.presets import studio_t
 from silhouette_mocap.core.errors import MocapError
-from silhouette_mocap.core.native.library import load
 from silhouette_mocap.core.rendering.native import NativeEvaluator
 from silhouette_mocap.core.rendering.opengl.gpu import OpenGLEvaluator
 from silhouette_mocap.core.rendering.reference import ReferenceEvaluator
-
-PATHS = [path for path in (1, 3, 4) if path <= load().sm_processor()]
 
 
 def skinned(body: Body, rng: np.random.Generator, segments) -> Body:
@@ -53,8 +50,7 @@ def test_kernel_and_reference_agree_on_skinned_surfaces(scenes, seed):
     wanted = [
         reference.energies(theirs, p, part) for p in (poses, by_view) for part in (None, [3, 1])
     ]
-    for path in PATHS:
-        native = NativeEvaluator(body, cameras, processor=path)
+    for native in scenes.natives(body, cameras):
         ours = native.prepared(maps)
         found = [
             native.energies(ours, p, part) for p in (poses, by_view) for part in (None, [3, 1])
