@@ -61,6 +61,60 @@ def test_a_camera_inside_a_segment_sees_nothing_else(scenes):
             assert picture.all()
 
 
+def test_what_is_nearer_than_a_centimetre_is_cut_off(scenes):
+    # all in front of the camera: the tip at 5 mm would be seen 64 * 2 px right of the middle, but
+    # the surface ends where it is 1 cm away, at most 64 px right of it
+    corners = [[0.01, 0, 0.005], [-0.005, -0.01, 0.06], [0.01, -0.01, 0.06], [0, 0.01, 0.06]]
+    faces = np.array([[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]])
+    camera = front(0.0, size=(256, 50))
+    for triangles in (faces, faces[:3]):
+        body = still(scenes, corners, triangles)
+        for picture in pictures_of(everyone(scenes, body, [camera])):
+            assert picture[:, 170:180].any() and not picture[:, 193:].any()
+        wanted, *others = pictures_of(scenes.exact(body, [camera]))
+        for picture in others:
+            np.testing.assert_array_equal(picture, wanted)
+
+
+@pytest.mark.parametrize("sign", [-1.0, 1.0])
+def test_far_from_the_origin_what_passes_a_camera_is_cut_all_the_same(scenes, sign):
+    # 2^40 m away, where steps of 2^-12 m are left; vertices and cameras lie on whole steps
+    vertices, triangles = scenes.sphere(6, 9, 0.25, np.random.default_rng(7))
+    body = still(scenes, np.round(vertices * 4096) / 4096, triangles)
+    pose = np.zeros(len(body.dofs))
+    here = [front(distance, 16.0) for distance in (0.0, 0.125, 0.25, 0.375)]
+    wanted = NativeEvaluator(body, here).silhouettes(pose)
+    assert any(picture.any() and not picture.all() for picture in wanted)
+    pose[:3] = sign * 2**40
+    shift = np.outer(pose[:3], [0, 0, 0, 1])
+    there = [replace(c, camera_from_world=c.camera_from_world - shift) for c in here]
+    for evaluator in scenes.exact(body, there):
+        for picture, twin in zip(evaluator.silhouettes(pose), wanted, strict=True):
+            np.testing.assert_array_equal(picture, twin)
+
+
+def test_a_surface_as_small_as_the_steps_of_its_place_is_cut_all_the_same(scenes):
+    # whether a ball of three steps passes a camera that it all but touches is a matter of rounding
+    rng = np.random.default_rng(8)
+    place, step = np.full(3, 2.0**40), 2.0**-12
+    vertices, triangles = scenes.sphere(6, 9, 3 * step, rng, 0.0)
+    body = still(scenes, vertices, triangles)
+    pose = np.concatenate([place, np.zeros(len(body.dofs) - 3)])
+    matrix = [[300, 0, 24], [0, 300, 20], [0, 0, 1]]
+    cameras = []
+    for vertex in rng.choice(vertices, 60):
+        z = -vertex / np.linalg.norm(vertex)
+        x = np.cross(z, [1, 0.3, 0.2])
+        axes = np.stack([x / np.linalg.norm(x), np.cross(z, x) / np.linalg.norm(x), z])
+        depth = 0.01 + step * (3 + rng.uniform(-6, 6))
+        transform = np.column_stack([axes, [0, 0, depth] - axes @ place])
+        cameras.append(Camera("far", (48, 40), matrix, transform))
+    wanted, *others = (evaluator.silhouettes(pose) for evaluator in scenes.exact(body, cameras))
+    for pictures in others:
+        for picture, twin in zip(pictures, wanted, strict=True):
+            np.testing.assert_array_equal(picture, twin)
+
+
 def test_what_lies_behind_a_camera_weighs_nothing(scenes):
     rng = np.random.default_rng(1)
     body = still(scenes, *scenes.sphere(4, 7, 0.3, rng))
