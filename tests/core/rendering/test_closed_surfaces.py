@@ -111,8 +111,8 @@ def test_rows_that_nothing_crosses_make_up_for_no_row_that_is_crossed_too_often(
     # by faces without area alone, must not count as crossed twice, nor four windings as none
     plates = [box((0.2, 0.15, 0.02), (0, 0, 0.1 * k)) for k in range(4)]
     pieces = [*plates, box((0.1, 0.1, 0.1), (0.2, -2.2, 0))]
-    check_equal(scenes, [reduce(joined if join else beside, pieces)], [above(4.0, 200, (60, 300))],
-                9, spread=0.01)  # fmt: skip
+    segment, cameras = reduce(joined if join else beside, pieces), [above(4.0, 200, (60, 300))]
+    check_equal(scenes, [segment], cameras, 9, spread=0.01)
 
 
 def test_edges_through_the_centres_of_pixels_leave_them_to_the_right_hand_side(scenes):
