@@ -1,8 +1,8 @@
 /* The fast way: only edges at which the signed sum of the neighbouring triangles does not vanish.
  *
  * Clusters of triangles, then single triangles, are judged by their planes. Twice the area of a
- * snapped triangle is, in steps of 1/256 px, 256^2 det K N . (p - c) / (z1 z2 z3), give or take
- * 2 d (|e1| + |e2|) + 8 d^2, where d = 1/2 is the snapping and |e| the edges' length in steps (1-norm):
+ * snapped triangle is, in steps of 1/256 px, 256^2 det K R N . (p - c) / (z1 z2 z3), give or take
+ * d (|e1| + |e2| + |e3|) + 4 d^2, where d = 1/2 is the snapping and |e| the edges' length in steps (1-norm):
  * at most 256 sqrt 2 scale(K) sqrt(1 + t^2) / z of that in metres, t the tangent off the axis. What
  * lies within that margin is decided by its snapped area itself, so the result is always exact.
  */

@@ -63,8 +63,8 @@ static void look(const sm_views *views, size_t lanes, size_t view, const double 
     const double half = 0.5 + 1e-3;
     for (int v = 0; v < L; v++) {
         reach[v] = (float)(distance[v] * (1.0 + 1e-4));
-        edge[v] = (float)(metres[v] * 2.0 * half * steps[v]);
-        step[v] = (float)(metres[v] * 8.0 * half * half);
+        edge[v] = (float)(metres[v] * half * steps[v]);
+        step[v] = (float)(metres[v] * 4.0 * half * half);
         slack[v] = (float)(2e-6 * (distance[v] + 2.0 * own));
     }
     for (int v = 0; v < L; v++) sight->front[view + (size_t)v] = optics[3 * lanes + v] > 0.0 ? -1 : 1;

@@ -35,10 +35,9 @@ typedef struct {
 /* Edges of a closed segment between a front and a back. */
 typedef struct {
     uint32_t *sure;              /* as edge_ends, with the sign where the first face shows its back */
-    uint64_t *open;              /* of four clusters each, a bit where a face beside the edge is not known */
+    int32_t *open;               /* edges where a face on either side is not known */
     float *margins;              /* m, of the clusters */
     int32_t *row, *end;          /* rows that are crossed */
-    size_t most;                 /* so many fit */
     uint64_t *at, *slope;        /* 2^-46 px, first crossing and what it grows by from row to row */
     uint64_t *minus;             /* all ones where the winding falls to the right */
     uint64_t *planes[3];         /* (words, H) bits of a window: winding modulo 8; all 0 between */

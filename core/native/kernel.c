@@ -79,10 +79,9 @@ static uint64_t *blank(void *base, size_t *at, int64_t count) {
 }
 
 static void cut_edges(void *base, size_t *at, int64_t clusters, int64_t height, int64_t words, sm_edges *e) {
-    int64_t most = 8 * SM_CLUSTER * (clusters + 1) + 4 * height, rows = (height + 15) & ~7;
+    int64_t most = SM_CLUSTER * (clusters + 2), rows = (height + 15) & ~7;
     e->rows = (size_t)rows;
-    e->most = (size_t)most;
-    e->open = part(base, at, clusters / 4 + 1, sizeof(uint64_t));
+    e->open = part(base, at, most, sizeof(int32_t));
     e->margins = part(base, at, clusters + 16, sizeof(float));
     e->sure = part(base, at, most, sizeof(uint32_t));
     e->row = part(base, at, most, sizeof(int32_t));

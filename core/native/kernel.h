@@ -23,7 +23,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define SM_ABI 5
+#define SM_ABI 6
 #define SM_CLUSTER 16 /* faces to a cluster */
 #define SM_RUN 8      /* the records of a cluster are filled up to a multiple */
 #define SM_LANES 8     /* views side by side */
@@ -71,7 +71,6 @@ typedef struct {
     const float *skin_weights;      /* (vertices, 4) and how much; the sum is 1 */
     const double *rests;            /* (J, 3) m, joints in the rest pose, where their axes are the
                                        world's */
-    const uint8_t *connected;       /* (S) whether the segment's triangles hang together */
     const int32_t *edge_starts;     /* (S + 1) clusters of the edges of closed segments; others
                                        have none */
     const float *edge_cones;        /* (8, edge_clusters) and 16 to fill up, like cluster_planes, of all faces beside
@@ -94,7 +93,7 @@ typedef struct {
     const double *projections;  /* (3, 4, L) world metres to homogeneous px */
     const double *planes;       /* (9, 4, L) unit planes in the world, positive inside: near, four
                                    sides of the guard region, four sides of the picture */
-    const double *optics;       /* (5, L) centre in the world, det K, largest stretch of K in px */
+    const double *optics;       /* (5, L) centre in the world, det K R, largest stretch of K in px */
     const int64_t *word_starts; /* (V + 1) */
     const int64_t *map_starts;  /* (V + 1), pixels, W * H each */
     const int64_t *sum_starts;  /* (V + 1), prefix sums, (W + 1) * H each */

@@ -12,7 +12,7 @@ from pathlib import Path
 from ..errors import MocapError
 from .build import fingerprint, host_target, library_name
 
-ABI = 5
+ABI = 6
 PLANES, MAPS = 0, 1
 FOLDER = Path(__file__).resolve().parent
 BUILD = f'build it: python -m pip install ziglang, then python "{FOLDER / "build.py"}"'
@@ -36,7 +36,7 @@ class BodyRecord(ctypes.Structure):
         *((name, c_void_p) for name in ("x", "y", "z", "corners", "face_planes")),
         *((name, c_void_p) for name in ("cluster_planes", "record_vertices", "record_faces")),
         *((name, c_void_p) for name in ("skinned", "skin_joints", "skin_weights", "rests")),
-        *((name, c_void_p) for name in ("connected", "edge_starts", "edge_cones")),
+        *((name, c_void_p) for name in ("edge_starts", "edge_cones")),
         *((name, c_void_p) for name in ("edge_sides", "edge_ends", "edge_corners")),
     )
 

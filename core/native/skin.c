@@ -50,16 +50,18 @@ static void find_planes(const int32_t *corners, float *const *axes, int32_t n, f
     const double round_up = 1.0 + 1e-5;
     for (int32_t f = 0; f < n; f++) {
         const int32_t *c = corners + 3 * (size_t)f;
-        double p[3], d[3], e[3];
+        double p[3], d[3], e[3], g[3];
         for (int a = 0; a < 3; a++) {
             p[a] = axes[a][c[0]];
             d[a] = axes[a][c[1]] - p[a];
             e[a] = axes[a][c[2]] - p[a];
+            g[a] = e[a] - d[a];
         }
         double normal[3] = {d[1] * e[2] - d[2] * e[1], d[2] * e[0] - d[0] * e[2], d[0] * e[1] - d[1] * e[0]};
         double length = sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
         double scale = length < 1e-18 ? 0.0 : 1.0 / length, offset = 0.0;
-        double sides = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) + sqrt(e[0] * e[0] + e[1] * e[1] + e[2] * e[2]);
+        double sides = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) + sqrt(e[0] * e[0] + e[1] * e[1] + e[2] * e[2]) +
+                       sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
         for (int a = 0; a < 3; a++) {
             planes[(size_t)a * (size_t)n + (size_t)f] = (float)(normal[a] * scale);
             offset += normal[a] * scale * p[a];

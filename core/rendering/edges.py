@@ -10,8 +10,6 @@ edges are known to look the same way.
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from .clusters import CLUSTER, cluster_order
 from .faces import Faces, joint_planes
@@ -30,14 +28,12 @@ class ClosedEdges:
             the one that runs back.
         ends: (K, 16) uint32 p + 2^16 q.
         corners: (K, 16, 4) int32 p, q and the third vertex of either face.
-        connected: whether the triangles hang together.
     """
 
     cones: np.ndarray
     sides: np.ndarray
     ends: np.ndarray
     corners: np.ndarray
-    connected: bool
 
 
 def closed_edges(faces: Faces) -> ClosedEdges:
@@ -49,7 +45,6 @@ def closed_edges(faces: Faces) -> ClosedEdges:
             np.zeros((0, 8, CLUSTER), np.float32),
             np.zeros((0, CLUSTER), np.uint32),
             np.zeros((0, CLUSTER, 4), np.int32),
-            False,
         )
     middles = faces.vertices[ends].astype(float).mean(axis=1)
     order = cluster_order(faces.planes[:3].T[pairs].mean(axis=1), middles)
@@ -65,14 +60,7 @@ def closed_edges(faces: Faces) -> ClosedEdges:
         _filled(sides, [0, 0, 0, -1] * 2).transpose(0, 2, 1).astype(np.float32),
         (corners[..., 0] + (corners[..., 1] << 16)).astype(np.uint32),
         corners.astype(np.int32),
-        _is_connected(pairs, count),
     )
-
-
-def _is_connected(pairs: np.ndarray, count: int) -> bool:
-    """Whether all of ``count`` faces are reached from one over edges between pairs (n, 2)."""
-    links = coo_array((np.ones(len(pairs)), pairs.T), shape=(count, count))
-    return connected_components(links, directed=False, return_labels=False) == 1
 
 
 def _filled(rows: np.ndarray, fill: list[int]) -> np.ndarray:

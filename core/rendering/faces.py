@@ -3,11 +3,11 @@
 A face with unit normal n and a point p on it shows its front to a camera at c if n . (c - p) > 0.
 The kernel needs the orientation of the *snapped* triangle in the image, which is the same wherever
 
-    |n . (c - p)| > alpha (|e_1| + |e_2|) / |N| + beta / |N|,      N = e_1 x e_2
+    |n . (c - p)| > alpha (|e_1| + |e_2| + |e_3|) / |N| + beta / |N|,      N = e_1 x e_2
 
-with e_1, e_2 two edges in metres; alpha and beta follow from bounds of depth and magnification over
-the segment (`contours.c`). In the same way all faces of a set with mean normal m and mean point q
-are known at once, and to face the same way, where
+with its edges e_1, e_2, e_3 in metres; alpha and beta follow from bounds of depth and magnification
+over the segment (`contours.c`). In the same way all faces of a set with mean normal m and mean
+point q are known at once, and to face the same way, where
 
     |m . (c - q)| > |c - q| max |n - m| + max |n . (p - q)| + the largest margin.
 """
@@ -52,7 +52,7 @@ def faces_of(vertices: np.ndarray, triangles: np.ndarray) -> Faces:
 
 
 def face_planes(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-    """(6, m) n, n . p and the margins' factors (|e_1| + |e_2|) / |N| and 1 / |N|.
+    """(6, m) n, n . p and the margins' factors (|e_1| + |e_2| + |e_3|) / |N| and 1 / |N|.
 
     A triangle without area has infinite margins.
     """
@@ -62,7 +62,7 @@ def face_planes(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     flat = length < 1e-18
     scale = np.where(flat, 0.0, 1 / np.where(flat, 1.0, length))
     unit = normal * scale[:, None]
-    edges = np.linalg.norm(q - p, axis=1) + np.linalg.norm(r - p, axis=1)
+    edges = sum(np.linalg.norm(edge, axis=1) for edge in (q - p, r - q, p - r))
     margins = np.stack([edges * scale, scale]) * ROUND_UP
     margins[:, flat] = np.inf
     return np.vstack([unit.T, (unit * p).sum(axis=1), margins])

@@ -92,7 +92,6 @@ def _edge_arrays(closed: list[ClosedEdges]) -> dict[str, np.ndarray]:
     """The closed segments' edges, one segment's after the other's."""
     cones = np.concatenate([edges.cones for edges in closed], axis=1)
     return {
-        "connected": np.array([edges.connected for edges in closed], np.uint8),
         "edge_starts": _running([len(edges.sides) for edges in closed]),
         "edge_cones": np.pad(cones.ravel(), (0, 2 * SPARE)),
         "edge_sides": np.concatenate([edges.sides for edges in closed]),

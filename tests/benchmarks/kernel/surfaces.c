@@ -14,7 +14,7 @@ typedef struct {
 /* One segment on its way into the body. */
 typedef struct {
     const mesh *m;
-    int32_t clusters, none, records, is_closed, is_connected;
+    int32_t clusters, none, records, is_closed;
     int32_t (*corners)[3];
     double (*planes)[6], (*middles)[3];
     record edges[MOST_RECORDS];
@@ -22,12 +22,12 @@ typedef struct {
 
 /* Unit normal, its place, and the margins' factors. */
 static void plane_of(const mesh *m, const int32_t *c, double *plane, double *middle) {
-    double a[3], b[3], n[3], first = 0.0, second = 0.0, length = 0.0;
+    double a[3], b[3], n[3], first = 0.0, second = 0.0, third = 0.0, length = 0.0;
     for (int i = 0; i < 3; i++) {
         a[i] = (double)m->at[c[1]][i] - m->at[c[0]][i];
         b[i] = (double)m->at[c[2]][i] - m->at[c[0]][i];
         middle[i] = ((double)m->at[c[0]][i] + m->at[c[1]][i] + m->at[c[2]][i]) / 3.0;
-        first += a[i] * a[i], second += b[i] * b[i];
+        first += a[i] * a[i], second += b[i] * b[i], third += (a[i] - b[i]) * (a[i] - b[i]);
     }
     for (int i = 0; i < 3; i++) {
         n[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
@@ -40,7 +40,7 @@ static void plane_of(const mesh *m, const int32_t *c, double *plane, double *mid
         plane[i] = flat ? 0.0 : n[i] / length;
         plane[3] += plane[i] * m->at[c[0]][i];
     }
-    plane[4] = flat ? INFINITY : (sqrt(first) + sqrt(second)) / length * (1.0 + 1e-5);
+    plane[4] = flat ? INFINITY : (sqrt(first) + sqrt(second) + sqrt(third)) / length * (1.0 + 1e-5);
     plane[5] = flat ? INFINITY : 1.0 / length * (1.0 + 1e-5);
 }
 
@@ -69,11 +69,6 @@ static void joint_plane(const piece *s, const int32_t *faces, int32_t n, float *
     out[7 * stride] = (float)margins[1];
 }
 
-static int32_t root_of(int32_t *roots, int32_t f) {
-    while (roots[f] != f) f = roots[f] = roots[roots[f]];
-    return f;
-}
-
 /* Puts the edge of one face into a record that lacks this side of it. */
 static void add_edge(piece *s, int32_t *heads, int32_t face, int32_t from, int32_t to) {
     int32_t p = from < to ? from : to, q = from < to ? to : from, side = from > to, *head = heads + (31 * p + q) % 1024;
@@ -89,11 +84,10 @@ static void add_edge(piece *s, int32_t *heads, int32_t face, int32_t from, int32
 }
 
 static void find_records(piece *s) {
-    static int32_t heads[1024], roots[MOST_FACES];
+    static int32_t heads[1024];
     memset(heads, 0xff, sizeof heads);
     for (int32_t f = 0; f < s->m->faces; f++) {
         const int32_t *c = s->m->corners[f];
-        roots[f] = f;
         if (c[0] == c[1] || c[1] == c[2] || c[0] == c[2]) continue;
         for (int i = 0; i < 3; i++) add_edge(s, heads, f, c[i], c[(i + 1) % 3]);
     }
@@ -101,10 +95,7 @@ static void find_records(piece *s) {
     for (int32_t k = 0; k < s->records; k++) {
         const int32_t *faces = s->edges[k].faces;
         if (faces[0] == s->none || faces[1] == s->none) s->is_closed = 0;
-        else roots[root_of(roots, faces[0])] = root_of(roots, faces[1]);
     }
-    s->is_connected = s->is_closed;
-    for (int32_t f = 1; f < s->m->faces; f++) s->is_connected &= root_of(roots, f) == root_of(roots, 0);
 }
 
 /* The cluster that owns a record. */
@@ -143,7 +134,6 @@ typedef struct {
     uint32_t *edge_ends;
     float *x[3], *face_planes, *cluster_planes, *edge_cones, *edge_sides;
     double *spheres;
-    uint8_t *connected;
 } surfaces;
 
 static void put_vertices(const mesh *m, int32_t segment, const surfaces *to) {
@@ -222,7 +212,6 @@ static void put_piece(const piece *s, int32_t segment, const sm_body *body, cons
     put_clusters(s, to->cluster_starts[segment], (size_t)body->clusters, to);
     for (int32_t k = 0; k < edge_clusters(s); k++)
         put_edges(s, k, (size_t)(to->edge_starts[segment] + k), (size_t)body->edge_clusters, to);
-    to->connected[segment] = (uint8_t)s->is_connected;
 }
 
 /* The arrays that hold as many numbers as the starts say. */
@@ -236,7 +225,6 @@ static void make_arrays(scene *s, surfaces *to) {
     to->cluster_planes = new_array(s, 8 * clusters, 4);
     to->record_vertices = new_array(s, records, 4);
     to->record_faces = new_array(s, records, 4);
-    to->connected = new_array(s, (size_t)body->segments, 1);
     to->edge_cones = new_array(s, 8 * edges + 16, 4);
     to->edge_sides = new_array(s, 128 * edges, 4);
     to->edge_ends = new_array(s, SM_CLUSTER * edges, 4);
@@ -250,7 +238,7 @@ static void point_at(sm_body *body, const surfaces *from) {
     body->x = from->x[0], body->y = from->x[1], body->z = from->x[2];
     body->corners = from->corners, body->face_planes = from->face_planes, body->cluster_planes = from->cluster_planes;
     body->record_vertices = from->record_vertices, body->record_faces = from->record_faces;
-    body->connected = from->connected, body->edge_cones = from->edge_cones, body->edge_sides = from->edge_sides;
+    body->edge_cones = from->edge_cones, body->edge_sides = from->edge_sides;
     body->edge_ends = from->edge_ends, body->edge_corners = from->edge_corners;
 }
 
