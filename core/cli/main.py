@@ -73,8 +73,11 @@ def _exit_code(command: Callable[[], int], console: Console) -> int:
     try:
         return command()
     except SystemExit as stop:
-        # argparse has answered itself
-        return stop.code if isinstance(stop.code, int) else DONE
+        if isinstance(stop.code, int | None):
+            # argparse has answered itself
+            return stop.code or DONE
+        console.fault(MocapError(str(stop.code)), INTERNAL)
+        return INTERNAL
     except MocapError as error:
         console.fault(error, INPUT)
         return INPUT

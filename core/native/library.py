@@ -10,7 +10,7 @@ from functools import cache
 from pathlib import Path
 
 from ..errors import MocapError
-from .build import fingerprint, host_target, library_name
+from .build import TARGETS, fingerprint, host_target, library_name
 
 ABI = 6
 PLANES, MAPS = 0, 1
@@ -102,9 +102,16 @@ def load() -> ctypes.CDLL:
     """The library, checked to fit this code.
 
     Raises:
-        MocapError: it is missing, cannot be loaded, or was built from other sources.
+        MocapError: there is none for this platform, or it is missing, cannot be loaded, or was
+            built from other sources.
     """
-    path = FOLDER / library_name(host_target())
+    target = host_target()
+    if target not in TARGETS:
+        raise MocapError(
+            f"there is no native kernel for {target}, only for {', '.join(TARGETS)}",
+            "choose the reference evaluator, which is slow",
+        )
+    path = FOLDER / library_name(target)
     if not path.exists():
         raise MocapError("the native kernel is missing", BUILD, file=path)
     try:

@@ -12,6 +12,7 @@ from ..body.body import Body
 from ..cameras.camera import Camera
 from ..energy.evaluator import Evaluator
 from ..errors import MocapError
+from ..native.library import load
 from .native import NativeEvaluator
 from .reference import ReferenceEvaluator
 
@@ -49,8 +50,13 @@ def usable(name: str | None, cameras: Sequence[Camera], note: Callable[[str], No
     """The evaluator to take for ``name``, one of `EVALUATORS`, or None for what is best.
 
     Where OpenGL was asked for and cannot be used, ``note`` is told why, and it is the native one.
+
+    Raises:
+        MocapError: the native kernel is wanted, and is missing or stale.
     """
     if name != "opengl":
+        if name != "reference":
+            load()
         return name or BEST
     from .opengl.gpu import check_usable
 

@@ -9,6 +9,7 @@ from silhouette_mocap.core.cli import main
 from silhouette_mocap.core.cli.main import COMMANDS
 from silhouette_mocap.core.errors import MocapError
 from silhouette_mocap.core.motion.motion import read_motion
+from silhouette_mocap.core.native import library
 
 
 def failing(monkeypatch, failure):
@@ -53,6 +54,29 @@ def test_an_internal_error_is_one_and_names_the_file_with_the_traceback(monkeypa
     named = Path(next(word for word in error.split() if "silhouette_mocap_error_" in word))
     assert "ZeroDivisionError: planted" in named.read_text("utf-8")
     named.unlink()
+
+
+@pytest.mark.parametrize(
+    ("stop", "code", "shown"),
+    [
+        (SystemExit(), 0, ""),
+        (SystemExit(0), 0, ""),
+        (SystemExit(7), 7, ""),
+        (SystemExit("no such thing"), 1, "silhouette-mocap: no such thing\n"),
+    ],
+)
+def test_an_exit_with_a_text_is_no_success(stop, code, shown, monkeypatch, capsys):
+    failing(monkeypatch, stop)
+    assert main(["info", "take.toml"]) == code
+    assert capsys.readouterr().err == shown
+
+
+def test_a_platform_without_a_kernel_is_two(monkeypatch, tmp_path, small_take, capsys):
+    monkeypatch.setenv("SILHOUETTE_MOCAP_TARGET", "amiga-68k")
+    monkeypatch.setattr("silhouette_mocap.core.rendering.choice.load", library.load.__wrapped__)
+    assert main(["fit", str(small_take), "--out", str(tmp_path), "--progress", "none"]) == 2
+    error = capsys.readouterr().err
+    assert error.startswith("silhouette-mocap: there is no native kernel for amiga-68k")
 
 
 def test_an_interrupt_is_130(monkeypatch, capsys):

@@ -54,6 +54,12 @@ def test_a_file_that_is_no_library_is_refused(tmp_path, monkeypatch):
         library.load.__wrapped__()
 
 
+def test_a_platform_without_a_kernel_is_refused_with_what_helps(monkeypatch):
+    monkeypatch.setenv("SILHOUETTE_MOCAP_TARGET", "amiga-68k")
+    with pytest.raises(MocapError, match=r"no native kernel for amiga-68k, .*reference evaluator"):
+        library.load.__wrapped__()
+
+
 def test_line_ends_do_not_change_the_fingerprint(tmp_path):
     (tmp_path / "a.c").write_bytes(b"int x;\nint y;\n")
     unix = build.fingerprint(tmp_path)
