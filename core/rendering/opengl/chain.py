@@ -19,27 +19,30 @@ class Chain:
     def __init__(self, body: Body):
         self._parents, self._offsets = body.parents.tolist(), body.offsets
         dofs = body.dofs
-        vectors: list[np.ndarray] = []
         self._steps: list[list[tuple[bool, int]]] = [[] for _ in self._parents]
+        firsts, seconds, swings = [], [], []
         inside_swing = False
         for row, (joint, kind) in enumerate(zip(dofs.joints.tolist(), dofs.kinds, strict=True)):
             second, inside_swing = inside_swing, kind == DofKind.SWING and not inside_swing
-            if not second:
-                vectors.append(np.zeros((len(dofs), 3)))
-                self._steps[joint].append((kind != DofKind.TRANSLATION, len(vectors) - 1))
-            # both rows of a swing add up to one rotation vector
-            vectors[-1][row] = dofs.axes[row]
-        self._count = len(vectors)
-        self._vectors = np.reshape(vectors, (-1, len(dofs), 3)).swapaxes(0, 1)
+            if second:
+                # both rows of a swing add up to one rotation vector
+                seconds.append(row)
+                swings.append(len(firsts) - 1)
+                continue
+            self._steps[joint].append((kind != DofKind.TRANSLATION, len(firsts)))
+            firsts.append(row)
+        self._firsts, self._seconds, self._swings = firsts, seconds, swings
+        self._axes = dofs.axes
 
     def transforms(self, poses: np.ndarray) -> np.ndarray:
         """(N, J, 3, 4) world from joint of poses (N, D), metres."""
-        shape = len(poses), self._count, 3
-        vectors = (poses @ self._vectors.reshape(poses.shape[1], -1)).reshape(shape)
-        turns = np.zeros((*shape, 3))
+        # DOF by DOF, so that one which is not finite spoils no joint but those it moves
+        vectors = poses[:, self._firsts, None] * self._axes[self._firsts]
+        vectors[:, self._swings] += poses[:, self._seconds, None] * self._axes[self._seconds]
+        turns = np.zeros((*vectors.shape, 3))
         if vectors.size:
             rotations = Rotation.from_rotvec(vectors.reshape(-1, 3))
-            turns = rotations.as_matrix().reshape(*shape, 3)
+            turns = rotations.as_matrix().reshape(turns.shape)
         rotations, places = [], []
         for joint, parent in enumerate(self._parents):
             rotation, place = np.eye(3)[None], self._offsets[joint][None, :, None]

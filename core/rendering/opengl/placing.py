@@ -18,6 +18,8 @@ from .chain import Chain
 HIDDEN, WHOLE, CUT = 0, 1, 2
 """A segment that covers no pixel of the window; one to draw as it is; one to clip first."""
 _SLACK = 1e-6
+_NOWHERE = 1e20
+"""Metres; what is farther away, or not a number, covers nothing and has no place in float32."""
 _MOST_POINTS = 1 << 20
 
 
@@ -68,6 +70,11 @@ def _states(centres: np.ndarray, radii: np.ndarray, planes: np.ndarray) -> np.nd
     states = np.where((distances[:, :5] > radii).all(axis=1), WHOLE, CUT)
     unseen = (distances[:, [0, 5, 6, 7, 8]] < -radii).any(axis=1)
     return np.where(unseen, HIDDEN, states).astype(np.uint32)
+
+
+def _somewhere(world: np.ndarray) -> np.ndarray:
+    """(V or 1, N, S) bool, whether matrices (V or 1, N, S, 3, 4) place a segment anywhere."""
+    return (np.abs(world) < _NOWHERE).all(axis=(3, 4))
 
 
 def _reach(
@@ -153,6 +160,7 @@ class Placer:
         centres = np.moveaxis((world * local[:, None]).sum(axis=-1), 3, 1)
         planes = window_planes(projections, windows, margin)
         states = _states(centres, spheres[:, 3], planes)
+        states[np.broadcast_to(~_somewhere(world), states.shape)] = HIDDEN
         reach = _reach(centres, spheres[:, 3], projections, windows, states)
         return Placement(rows.astype(np.float32), states, reach)
 

@@ -125,6 +125,32 @@ def test_a_candidate_has_its_energy_wherever_it_stands(scenes, mode):
     assert evaluator.energies(weights, poses[:0]).shape == (0, 18)
 
 
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")
+@pytest.mark.parametrize("mode", MODES)
+def test_a_candidate_that_is_nowhere_changes_no_other(scenes, mode):
+    rng = np.random.default_rng(1)
+    body = scenes.body_of(scenes.mixed_pieces(rng), rng)
+    cameras = [scenes.camera_at(1.5, 40, size, rng) for size in [(64, 48), (90, 33)]]
+    evaluator = mode(body, cameras)
+    weights = evaluator.prepared(scenes.maps_for(cameras, 300, rng))
+    poses = rng.normal(0, 0.2, (6, len(body.dofs)))
+    expected = evaluator.energies(weights, poses)
+    for value in (np.nan, np.inf, 1e300, 1e100, 1e40, 1e20, 1e15):
+        for dof in range(len(body.dofs)):
+            mixed = np.concatenate([poses, poses[:1]])
+            mixed[-1, dof] = value
+            found = evaluator.energies(weights, mixed)
+            np.testing.assert_array_equal(found[:-1], expected, err_msg=f"{value} in {dof}")
+            if np.isnan(value):
+                moved = {int(body.dofs.joints[dof])}
+                for joint, parent in enumerate(body.parents):
+                    if parent in moved:
+                        moved.add(joint)
+                others = [s for s, joint in enumerate(body.segment_joints) if joint not in moved]
+                left = evaluator.energies(weights, poses[:1], others)
+                np.testing.assert_array_equal(found[-1:], left, err_msg=f"{value} in {dof}")
+
+
 @pytest.mark.parametrize("mode", MODES)
 def test_views_are_kept_apart(scenes, mode):
     rng = np.random.default_rng(12)
