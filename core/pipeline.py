@@ -16,7 +16,7 @@ from .initialisation.first_pose import FirstFit, PoseRequest, initialised
 from .initialisation.plausibility import check_first_fit
 from .motion.overlay import Tile, overlay_picture
 from .progress import FrameFigures, Progress
-from .rendering.choice import BEST, EVALUATORS, MakeEvaluator, usable
+from .rendering.choice import BEST, Choice
 from .rendering.detail import OUTLINE_PX, with_level_for
 from .results.fingerprint import Inputs, fit_inputs
 from .results.journal import SET_ASIDE, UNFINISHED, Journal, Start, set_aside
@@ -67,14 +67,13 @@ class FitRequest:
 
     @property
     def settings(self) -> dict[str, object]:
-        """What decides the result, beside the take."""
-        drawn = {"evaluator": self.evaluator, "outline_px": OUTLINE_PX}
-        return {**asdict(self.search), **drawn, "without": list(self.without)}
+        """What decides the result, beside the take.
 
-    @property
-    def make_evaluator(self) -> MakeEvaluator:
-        """What makes the evaluator of a body and cameras."""
-        return EVALUATORS[self.evaluator or BEST]
+        The evaluator is the one asked for, so that a fit can be resumed whether or not OpenGL
+        still works; which of them drew each frame is told by the report.
+        """
+        drawn = {"evaluator": self.evaluator or BEST, "outline_px": OUTLINE_PX}
+        return {**asdict(self.search), **drawn, "without": list(self.without)}
 
 
 def fit(take: Take, request: FitRequest, progress: Progress) -> FitResult:
@@ -82,7 +81,8 @@ def fit(take: Take, request: FitRequest, progress: Progress) -> FitResult:
 
     Every finished frame is kept on disk at once: whatever ends the fit, ``request.resume`` goes on
     after the last of them and comes to the same result, bit by bit. When it is interrupted or
-    fails, the frames finished so far are written as results, too.
+    fails, the frames finished so far are written as results, too. Where OpenGL was asked for and
+    fails, at first or on the way, the native evaluator goes on with the same frame.
 
     Raises:
         MocapError: the take, its calibration or its footage is at fault, or the unfinished fit was
@@ -90,7 +90,8 @@ def fit(take: Take, request: FitRequest, progress: Progress) -> FitResult:
     """
     check_spared(take, request.out)
     views = open_views(take, request.without, request.frames, progress)
-    request = replace(request, evaluator=usable(request.evaluator, views.cameras, progress.note))
+    choice = Choice(request.evaluator, progress.warn)
+    choice.check(views.cameras, progress.note)
     made_folder(request.out)
     inputs = fit_inputs(take, views, request.settings)
     journal = resumed(request.out, inputs, views) if request.resume else None
@@ -103,11 +104,12 @@ def fit(take: Take, request: FitRequest, progress: Progress) -> FitResult:
                 progress.note(f"{' and '.join(gone)} went since; leave out --resume for new ones")
             return finished
     if journal is None:
-        journal = _begun(take, views, request, inputs, progress)
+        start = _started(take, views, inputs, choice, progress)
+        journal = _begun(request.out, start, progress)
     else:
         progress.note(f"{len(journal)} frames were finished before")
     views = views.reduced_by(journal.start.factors)
-    outcome = Outcome(take, views, journal, request.settings)
+    outcome = Outcome(take, views, journal, request.settings, choice)
 
     def save() -> FitResult:
         with request.shield():
@@ -125,10 +127,8 @@ def fit(take: Take, request: FitRequest, progress: Progress) -> FitResult:
     return result
 
 
-def _begun(
-    take: Take, views: Views, request: FitRequest, inputs: Inputs, progress: Progress
-) -> Journal:
-    """A journal with the first pose and no frame; what lies in its place is set aside."""
+def _started(take: Take, views: Views, inputs: Inputs, choice: Choice, progress: Progress) -> Start:
+    """The first pose, and what it was found from."""
     start = initial_frames(take, views.frames)
     # before they are read, as the fit may take longer than a change of theirs
     stamps = np.stack([views.stamps(frame) for frame in start])
@@ -139,34 +139,36 @@ def _begun(
     for note in looks:
         progress.note(note)
     progress.begin("first pose", 1)
-    first = _first_fit(take, views, tuple(seen.values()), request)
+    first = _first_fit(take, views, tuple(seen.values()), choice)
     for note in first.notes:
         progress.note(note)
-    if set_aside(request.out):
+    return Start(
+        inputs=inputs,
+        factors=tuple(view.reduction.factor for view in views.views),
+        frames=np.array(start, np.int64),
+        stamps=stamps,
+        body=first.body,
+        pose=first.pose,
+        notes=(*choice.notes, *views.notes, *looks, *first.notes),
+    )
+
+
+def _begun(out: Path, start: Start, progress: Progress) -> Journal:
+    """A journal in ``out`` without frames; what lies in its place is set aside."""
+    if set_aside(out):
         progress.note(
-            f"an unfinished fit is set aside in {request.out / SET_ASIDE}; "
+            f"an unfinished fit is set aside in {out / SET_ASIDE}; "
             "--resume would have gone on with it"
         )
-    return Journal.begun(
-        request.out / UNFINISHED,
-        Start(
-            inputs=inputs,
-            factors=tuple(view.reduction.factor for view in views.views),
-            frames=np.array(start, np.int64),
-            stamps=stamps,
-            body=first.body,
-            pose=first.pose,
-            notes=(*views.notes, *looks, *first.notes),
-        ),
-    )
+    return Journal.begun(out / UNFINISHED, start)
 
 
 def _track(outcome: Outcome, request: FitRequest, progress: Progress) -> None:
     """Tracks what is not in the journal yet: from the initial pose on, then what comes before."""
-    views, journal = outcome.views, outcome.journal
+    views, journal, choice = outcome.views, outcome.journal, outcome.choice
     start = int(journal.start.frames[0])
     setting = SETTINGS[request.search.setting][request.search.fast_motion]
-    make_evaluator = with_level_for(journal.start.pose, request.make_evaluator)
+    make_evaluator = with_level_for(journal.start.pose, choice)
     tracker = HierarchicalTracker(journal.start.body, views.cameras, make_evaluator, setting)
     first, last = views.frames
     finished = journal.poses()
@@ -178,7 +180,8 @@ def _track(outcome: Outcome, request: FitRequest, progress: Progress) -> None:
         seen: dict[int, tuple[np.ndarray, Silhouettes]] = {}
         for found in track(tracker, past[-1], _read(views, left, seen), past[-2]):
             stamps, silhouettes = seen.pop(found.frame)
-            journal.add(found, stamps, _overlay(tracker.evaluator, views, found, silhouettes))
+            picture = _overlay(tracker.evaluator, views, found, silhouettes)
+            journal.add(found, stamps, picture, choice.name)
             progress.advance(found.frame, _figures(found, views))
 
 
@@ -210,14 +213,12 @@ def initial_frames(take: Take, frames: tuple[int, int]) -> tuple[int, ...]:
     return tuple(int(f) for f in np.linspace(begin, end, count).round())
 
 
-def _first_fit(
-    take: Take, views: Views, seen: tuple[Silhouettes, ...], request: FitRequest
-) -> FirstFit:
+def _first_fit(take: Take, views: Views, seen: tuple[Silhouettes, ...], choice: Choice) -> FirstFit:
     body = performer_body(take.performer)
     height = known_height(take.performer, body)
     wanted = PoseRequest(take.initial_pose.kind, height, take.floor)
     try:
-        first = initialised(body, views.cameras, seen, wanted, request.make_evaluator)
+        first = initialised(body, views.cameras, seen, wanted, choice)
         notes = check_first_fit(first, views.cameras)
     except MocapError as error:
         raise error.about(take.path) from error

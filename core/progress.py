@@ -37,6 +37,10 @@ class Progress(Protocol):
         """Something the user should know, one sentence."""
         ...
 
+    def warn(self, text: str) -> None:
+        """A note on what is done otherwise than asked for, which must be seen by all means."""
+        ...
+
     def begin(self, task: str, total: int) -> None:
         """``total`` frames, or other steps, of ``task`` are about to be worked on."""
         ...
@@ -56,6 +60,10 @@ class Silence:
 
     def note(self, text: str) -> None:
         """Drops the text."""
+
+    def warn(self, text: str) -> None:
+        """A note like others."""
+        self.note(text)
 
     def begin(self, task: str, total: int) -> None:
         """Drops the announcement."""

@@ -42,6 +42,7 @@ def report_of(motion: Motion, **changes) -> dict:
             "fast_motion": False,
             "without": [],
         },
+        "evaluators": {"opengl": 3, "native": len(motion.frames) - 3},
         "versions": {"numpy": "2.0"},
         "cameras": {
             name: {

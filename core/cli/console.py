@@ -120,6 +120,10 @@ class Console:
         """Something the user should know, one sentence."""
         _shown.info("note: %s", text)
 
+    def warn(self, text: str) -> None:
+        """A note on what is done otherwise than asked for."""
+        _shown.warning("%s", text)
+
     def begin(self, task: str, total: int) -> None:
         """``total`` frames, or other steps, of ``task`` are about to be worked on."""
         self.task = Task(task, total, time.monotonic())
@@ -160,6 +164,11 @@ class Console:
 
 class PlainConsole(Console):
     """Shows what went wrong, line by line, and no progress."""
+
+    def warn(self, text: str) -> None:
+        """The note in one line."""
+        super().warn(text)
+        self.line(f"{PROGRAM}: {' '.join(text.split())}")
 
     def lost(self, frames: Sequence[int]) -> None:
         """The frames in one line."""

@@ -32,6 +32,11 @@ class JsonConsole(Console):
         super().note(text)
         self._tell("note", text=text)
 
+    def warn(self, text: str) -> None:
+        """``note``."""
+        super().warn(text)
+        self._tell("note", text=text)
+
     def begin(self, task: str, total: int) -> None:
         """``begin``."""
         super().begin(task, total)

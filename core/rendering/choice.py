@@ -13,6 +13,7 @@ from ..cameras.camera import Camera
 from ..energy.evaluator import Evaluator
 from ..errors import MocapError
 from ..native.library import load
+from .fallback import Failures, FallbackEvaluator
 from .native import NativeEvaluator
 from .reference import ReferenceEvaluator
 
@@ -46,24 +47,51 @@ BEST = "native"
 """What is taken where none was asked for, or where that one cannot be used."""
 
 
-def usable(name: str | None, cameras: Sequence[Camera], note: Callable[[str], None]) -> str:
-    """The evaluator to take for ``name``, one of `EVALUATORS`, or None for what is best.
+class Choice:
+    """Makes evaluators of the kind that was asked for; where OpenGL fails, native ones go on.
 
-    Where OpenGL was asked for and cannot be used, ``note`` is told why, and it is the native one.
+    Args:
+        name: one of `EVALUATORS`, or None for what is best.
+        tell: told, once, that the native evaluator goes on, and why.
+
+    Attributes:
+        name: the kind in use.
+        notes: what was told.
 
     Raises:
         MocapError: the native kernel is wanted, and is missing or stale.
     """
-    if name != "opengl":
-        if name != "reference":
-            load()
-        return name or BEST
-    from .opengl.gpu import check_usable
 
-    try:
-        renderer = check_usable(cameras)
-    except MocapError as error:
-        note(f"{error.problem}; the native evaluator goes on")
-        return BEST
-    note(f"OpenGL draws on {renderer}")
-    return name
+    def __init__(self, name: str | None, tell: Callable[[str], None]):
+        self.name, self.notes = name or BEST, ()
+        self._tell, self._failures = tell, Failures(self._give_up)
+        if self.name == "native":
+            load()
+
+    def check(self, cameras: Sequence[Camera], note: Callable[[str], None]) -> None:
+        """Tries OpenGL, where it was asked for, and notes what draws pictures of ``cameras``."""
+        if self.name != "opengl":
+            return
+        from .opengl.gpu import check_usable
+
+        try:
+            note(f"OpenGL draws on {check_usable(cameras)}")
+        except MocapError as fault:
+            self._failures.add(fault)
+
+    def __call__(self, body: Body, cameras: tuple[Camera, ...], level: int = 0) -> Evaluator:
+        """An evaluator of one of the body's surfaces in cameras."""
+        if self.name == "opengl":
+            try:
+                first = opengl(body, cameras, level)
+                return FallbackEvaluator(
+                    first, lambda: native(body, cameras, level), self._failures
+                )
+            except MocapError as fault:
+                self._failures.add(fault)
+        return EVALUATORS[self.name](body, cameras, level)
+
+    def _give_up(self, fault: MocapError) -> None:
+        self.name = BEST
+        self.notes = (f"{fault.problem}; the native evaluator goes on",)
+        self._tell(self.notes[0])

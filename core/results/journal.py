@@ -120,20 +120,21 @@ class Journal:
     def __len__(self) -> int:
         return self._count
 
-    def add(self, fit: FrameFit, stamps: np.ndarray, picture: np.ndarray) -> None:
+    def add(self, fit: FrameFit, stamps: np.ndarray, picture: np.ndarray, evaluator: str) -> None:
         """One more finished frame.
 
         Args:
             fit: the frame.
             stamps: (V, 2) of the files it was read from.
             picture: (H, W, 3) uint8 BGR overlay.
+            evaluator: the kind that drew it, in at most 16 letters.
 
         Raises:
             MocapError: the disk refuses it, or the journal is not there any more.
         """
         self._check_own()
         write_picture(self.picture(fit.frame), picture, JPEG_QUALITY)
-        record, stream = _packed(fit, stamps, self._kind), self._stream
+        record, stream = _packed(fit, stamps, evaluator, self._kind), self._stream
         try:
             # over what a record cut short has left
             stream.seek(self._count * self._kind.itemsize)
@@ -152,6 +153,10 @@ class Journal:
     def poses(self) -> np.ndarray:
         """(n, D) their poses, in that order."""
         return self._records()["pose"]
+
+    def evaluators(self) -> list[str]:
+        """The kinds of evaluators that drew them, in that order."""
+        return [name.decode("ascii") for name in self._records()["evaluator"].tolist()]
 
     def stamps(self) -> tuple[np.ndarray, np.ndarray]:
         """(n,) their numbers and (n, V, 2) the stamps of their files, in that order."""
@@ -283,6 +288,7 @@ def _record(dofs: int, views: int) -> np.dtype:
             ("outside_windows", "<i8"),
             ("seconds", "<f8"),
             ("stamps", "<i8", (views, 2)),
+            ("evaluator", "S16"),
             ("check", "<u4"),
         ]
     )
@@ -291,14 +297,14 @@ def _record(dofs: int, views: int) -> np.dtype:
 _SCORES = ("xor_px", "iou", "contour_px", "limb_residual", "confidence", "lost")
 
 
-def _packed(fit: FrameFit, stamps: np.ndarray, kind: np.dtype) -> np.ndarray:
+def _packed(fit: FrameFit, stamps: np.ndarray, evaluator: str, kind: np.dtype) -> np.ndarray:
     record = np.zeros((), kind)
     for name in _SCORES:
         record[name] = getattr(fit.scores, name)
     record["frame"], record["pose"], record["seconds"] = fit.frame, fit.pose, fit.seconds
     record["evaluated"] = fit.tally.evaluated
     record["outside_windows"] = fit.tally.outside_windows
-    record["stamps"] = stamps
+    record["stamps"], record["evaluator"] = stamps, evaluator.encode("ascii")
     record["check"] = zlib.crc32(record.tobytes()[:-4])
     return record
 

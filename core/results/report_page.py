@@ -43,7 +43,7 @@ def write_report_page(
         Section("cameras", "Cameras", _cameras(motion, report)),
         Section("error", "Error against the truth", _error(report)),
         Section("notes", "Notes", bullets(report["notes"])),
-        Section("settings", "Settings", facts(_plain(report["settings"]))),
+        Section("settings", "Settings", facts(_plain(_settings(report)))),
         Section("versions", "Versions", facts(_plain(report["versions"]))),
         Section("files", "Files", _files(path.parent)),
     )
@@ -174,6 +174,11 @@ def _error(report: dict) -> Html:
         "differently from system to system."
     )
     return joined((table(headings, [whole_row, *rows]), element("p", told, class_="soft")))
+
+
+def _settings(report: dict) -> dict:
+    """With the kinds of evaluators that drew the frames, which may be other than asked for."""
+    return {**report["settings"], "frames_by_evaluator": report["evaluators"]}
 
 
 def _plain(values: dict) -> list[tuple[str, str]]:

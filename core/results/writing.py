@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -19,6 +20,7 @@ from ..motion.point_track import PointTrack, read_point_track
 from ..motion.recording import recorded
 from ..motion.scoring import score
 from ..progress import Progress
+from ..rendering.choice import Choice
 from ..rendering.detail import drawn_surface
 from ..take.take import EXPORTS, Take
 from ..take.views import Views
@@ -56,12 +58,14 @@ class Outcome:
         views: its cameras, as they were used.
         journal: the tracked frames.
         settings: what was asked for beside the take.
+        choice: what draws.
     """
 
     take: Take
     views: Views
     journal: Journal
     settings: dict[str, object]
+    choice: Choice
 
     @property
     def finished(self) -> bool:
@@ -98,7 +102,7 @@ def write_results(outcome: Outcome, folder: Path, progress: Progress) -> FitResu
     so on beside it.
     """
     take, views, start = outcome.take, outcome.views, outcome.journal.start
-    notes = list(start.notes)
+    notes = list(dict.fromkeys((*start.notes, *outcome.choice.notes)))
 
     def tell(note: str) -> None:
         notes.append(note)
@@ -119,6 +123,7 @@ def write_results(outcome: Outcome, folder: Path, progress: Progress) -> FitResu
             "frames": list(views.frames),
             **outcome.settings,
         },
+        "evaluators": dict(Counter(outcome.journal.evaluators())),
         "versions": versions(),
         "cameras": _camera_facts(views, motion),
         "surface": drawn_surface(start.body, views.cameras, start.pose),

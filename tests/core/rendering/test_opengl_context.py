@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from silhouette_mocap.core.errors import MocapError
 from silhouette_mocap.core.rendering import choice
+from silhouette_mocap.core.rendering.fallback import FallbackEvaluator
 from silhouette_mocap.core.rendering.native import NativeEvaluator
 from silhouette_mocap.core.rendering.opengl import context
 from silhouette_mocap.core.rendering.opengl.context import GlThread, load_functions, make_context
@@ -76,8 +77,8 @@ def test_nothing_imports_pyopengl_until_it_is_asked_for_and_the_environment_stay
     code = """
 import os, sys
 from silhouette_mocap.core import pipeline
-from silhouette_mocap.core.rendering.choice import usable
-assert usable(None, (), print) == "native"
+from silhouette_mocap.core.rendering.choice import Choice
+assert Choice(None, print).name == "native"
 assert not any(name.split(".")[0] == "OpenGL" for name in sys.modules)
 from silhouette_mocap.core.rendering.opengl.context import load_functions
 before = dict(os.environ)
@@ -95,22 +96,33 @@ def test_evaluators_are_made_by_name(scenes):
     kinds = {"native": NativeEvaluator, "opengl": OpenGLEvaluator, "reference": ReferenceEvaluator}
     assert choice.EVALUATORS.keys() == kinds.keys()
     for name, kind in kinds.items():
-        notes = []
-        assert choice.usable(name, cameras, notes.append) == name
+        notes, told = [], []
+        chosen = choice.Choice(name, told.append)
+        chosen.check(cameras, notes.append)
+        evaluator = chosen(body, cameras)
         assert type(choice.EVALUATORS[name](body, cameras)) is kind
-        assert len(notes) == (name == "opengl")
+        assert type(evaluator) is (FallbackEvaluator if name == "opengl" else kind)
+        assert chosen.name == name and not told and len(notes) == (name == "opengl")
 
 
 def test_without_a_context_the_native_evaluator_goes_on_and_one_line_says_why(no_context, scenes):
-    cameras = (scenes.camera_at(1.0, 40, (64, 48), np.random.default_rng(2)),)
-    for _ in range(2):
-        notes = []
-        assert choice.usable("opengl", cameras, notes.append) == "native"
-        assert notes == [f"OpenGL cannot be used ({no_context}); the native evaluator goes on"]
+    rng = np.random.default_rng(2)
+    body = scenes.body_of([scenes.sphere(3, 6, 0.15, rng)], rng)
+    cameras = (scenes.camera_at(1.0, 40, (64, 48), rng),)
+    for checked in (True, False):
+        told = []
+        chosen = choice.Choice("opengl", told.append)
+        if checked:
+            chosen.check(cameras, told.append)
+        assert [type(chosen(body, cameras)) for _ in range(2)] == [NativeEvaluator] * 2
+        assert told == [f"OpenGL cannot be used ({no_context}); the native evaluator goes on"]
+        assert chosen.name == "native" and list(chosen.notes) == told
 
 
 def test_pictures_that_opengl_cannot_draw_are_left_to_the_native_evaluator(scenes):
     cameras = (scenes.camera_at(1.0, 40, (9000, 48), np.random.default_rng(3)),)
-    notes = []
-    assert choice.usable("opengl", cameras, notes.append) == "native"
-    assert "at most 8192 px, one has 9000" in notes[0]
+    told = []
+    chosen = choice.Choice("opengl", told.append)
+    chosen.check(cameras, told.append)
+    assert chosen.name == "native"
+    assert "at most 8192 px, one has 9000" in told[0]

@@ -11,6 +11,7 @@ from silhouette_mocap.core.results.journal import SET_ASIDE, UNFINISHED, Journal
 from synthetic import small_body
 
 VIEWS = 3
+KINDS = "native", "opengl"
 PICTURE = np.zeros((8, 8, 3), np.uint8)
 
 
@@ -45,7 +46,7 @@ def begun(folder, frames=()) -> Journal:
     )
     journal = Journal.begun(folder, start)
     for frame in frames:
-        journal.add(frame_fit(frame), stamps(frame), PICTURE)
+        journal.add(frame_fit(frame), stamps(frame), PICTURE, KINDS[frame % 2])
     return journal
 
 
@@ -61,6 +62,7 @@ def test_what_was_added_comes_back_to_the_last_bit(tmp_path):
             np.testing.assert_array_equal(
                 getattr(found.scores, name), getattr(wanted.scores, name), strict=True
             )
+    assert journal.evaluators() == ["opengl", "native", "native"]
     frames, kept = journal.stamps()
     np.testing.assert_array_equal(frames, [5, 6, 4])
     np.testing.assert_array_equal(kept, [stamps(f) for f in (5, 6, 4)])
@@ -85,7 +87,7 @@ def test_a_record_cut_short_is_dropped_and_the_next_takes_its_place(tmp_path, lo
     journal = Journal.opened(tmp_path / "j")
     kept = [fit.frame for fit in journal.fits()]
     assert kept == ([5] if lost > 0 else [5, 6])
-    journal.add(frame_fit(9), stamps(9), PICTURE)
+    journal.add(frame_fit(9), stamps(9), PICTURE, KINDS[0])
     assert [fit.frame for fit in Journal.opened(tmp_path / "j").fits()] == [*kept, 9]
 
 
@@ -109,7 +111,7 @@ def test_a_journal_that_goes_while_it_is_used_is_a_fault(tmp_path, name):
     journal = begun(tmp_path / "j", (5, 6))
     (tmp_path / "j" / name).rename(tmp_path / "elsewhere")
     begun(tmp_path / "j", (1,)) if not name else None
-    for use in (journal.fits, lambda: journal.add(frame_fit(7), stamps(7), PICTURE)):
+    for use in (journal.fits, lambda: journal.add(frame_fit(7), stamps(7), PICTURE, KINDS[0])):
         with pytest.raises(MocapError, match=r"j: was moved or removed while the fit ran; give"):
             use()
 
