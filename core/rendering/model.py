@@ -32,6 +32,20 @@ def _filled(record, arrays: dict[str, np.ndarray]):
     return record
 
 
+def check_cameras(cameras: Sequence[Camera]) -> None:
+    """Refuses what cannot be drawn.
+
+    Raises:
+        ValueError: no camera, one with lens distortion, or pictures that leave the guard region,
+            beyond which nothing is ever covered.
+    """
+    if not cameras or not all(camera.is_pinhole for camera in cameras):
+        raise ValueError("expected at least one camera, all of them pinhole")
+    largest = max(max(camera.size) for camera in cameras)
+    if largest > GUARD_PX:
+        raise ValueError(f"expected pictures of at most {GUARD_PX:.0f} px, got {largest}")
+
+
 def enclosing_spheres(vertices: np.ndarray, starts: np.ndarray) -> np.ndarray:
     """(S, 4) centres and radii of spheres round each segment's vertices; not the smallest."""
     spheres = np.zeros((len(starts) - 1, 4))
@@ -142,7 +156,14 @@ def _side_by_side(values: list[np.ndarray]) -> np.ndarray:
 
 
 def views_record(cameras: Sequence[Camera], processor: int) -> ViewsRecord:
-    """The cameras as the kernel's ``sm_views``, computed by the given code path."""
+    """The cameras as the kernel's ``sm_views``, computed by the given code path.
+
+    Raises:
+        ValueError: as by `check_cameras`, or a camera with another last row than 0 0 1.
+    """
+    check_cameras(cameras)
+    if not all(np.array_equal(camera.matrix[2], [0, 0, 1]) for camera in cameras):
+        raise ValueError("expected 0 0 1 in the last row of every intrinsic matrix")
     sizes = np.array([camera.size for camera in cameras], np.int32)
     width, height = sizes.astype(np.int64).T
 

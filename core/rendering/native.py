@@ -16,6 +16,15 @@ from ..body.body import Body
 from ..cameras.camera import Camera
 from ..energy.evaluator import Outline, WeightMaps
 from ..native.library import MAPS, PLANES, PointsRecord, WeightsRecord, check, load
+from .arguments import (
+    Sizes,
+    check_weights,
+    checked_level,
+    checked_maps,
+    chosen_segments,
+    fixed_segments,
+    picture_sizes,
+)
 from .model import body_record, views_record
 
 OUTLINE_ROOM = 2000
@@ -30,11 +39,13 @@ class NativeWeights:
         constants: (V,) int64, the energy of an empty rendering, fixed parts included.
         arrays: the kernel's arrays by name.
         record: the ``sm_weights`` that points at them.
+        sizes: of the V pictures.
     """
 
     constants: np.ndarray
     arrays: dict[str, np.ndarray]
     record: WeightsRecord
+    sizes: Sizes
 
 
 class _Pointed:
@@ -54,13 +65,14 @@ class NativeEvaluator:
 
     Args:
         body: the model.
-        cameras: V pinhole cameras, any sizes up to 32767 px.
+        cameras: V pinhole cameras, any sizes up to 16,000 px.
         level: which of the body's surfaces to draw.
         threads: number of threads over which a batch of candidates is spread.
         processor: code path, 1 (any), 3 (x86-64-v3) or 4 (x86-64-v4); None for the best here.
 
     Raises:
-        ValueError: a camera with lens distortion, or a body whose indices are out of range.
+        ValueError: a camera with lens distortion or too large pictures, a body whose indices are
+            out of range, no such level or code path, or less than one thread.
         MocapError: the native library is missing or stale.
     """
 
@@ -72,17 +84,16 @@ class NativeEvaluator:
         threads: int = 1,
         processor: int | None = None,
     ):
-        if not cameras or not all(camera.is_pinhole for camera in cameras):
-            raise ValueError("expected at least one camera, all of them pinhole")
-        if not all(np.array_equal(camera.matrix[2], [0, 0, 1]) for camera in cameras):
-            raise ValueError("expected 0 0 1 in the last row of every intrinsic matrix")
+        if threads < 1:
+            raise ValueError(f"expected at least one thread, got {threads}")
         self._library = load()
         best = self._library.sm_processor()
         if processor is not None and not 1 <= processor <= best:
             raise ValueError(f"expected a code path of at most {best} here, got {processor}")
-        self.body, self.cameras, self.level, self.threads = body, tuple(cameras), level, threads
+        self.body, self.cameras, self.threads = body, tuple(cameras), threads
+        self.level, self._sizes = checked_level(body, level), picture_sizes(cameras)
+        self._views = views_record(cameras, best if processor is None else processor)
         self._body = body_record(body, level)
-        self._views = views_record(cameras, processor or best)
         self._refs = byref(self._body), byref(self._views)
         check(self._library.sm_check(*self._refs))
         self._scratch_bytes = self._library.sm_scratch(*self._refs)
@@ -93,10 +104,8 @@ class NativeEvaluator:
 
     def prepared(self, maps: WeightMaps) -> NativeWeights:
         """Bit planes where all weights are -1, 0 or 1; else maps with prefix sums."""
-        shapes = [camera.size[::-1] for camera in self.cameras]
-        if [np.shape(weight_map) for weight_map in maps.maps] != shapes:
-            raise ValueError(f"expected weight maps of shapes {shapes}")
-        pixels = np.concatenate([np.asarray(m, np.int16).ravel() for m in maps.maps])
+        maps = checked_maps(maps, self._sizes)
+        pixels = np.concatenate([weight_map.ravel() for weight_map in maps.maps])
         small = pixels.min() >= -1 and pixels.max() <= 1
         weights = self._empty_weights(PLANES if small else MAPS, maps.constants)
         column = self._column()
@@ -115,8 +124,8 @@ class NativeEvaluator:
 
         ``pose`` may be (V, D) as well, one pose per view.
         """
-        fixed = sorted(set(range(len(self.body.segment_names))) - {int(s) for s in moving})
-        covered = self._covered(pose, fixed)
+        check_weights(weights, NativeWeights, self._sizes)
+        covered = self._covered(pose, fixed_segments(self.body, moving))
         result = self._empty_weights(weights.record.kind, weights.constants)
         column = self._column()
         if windows is not None:
@@ -139,6 +148,7 @@ class NativeEvaluator:
         self, weights: NativeWeights, poses: np.ndarray, segments: Sequence[int] | None = None
     ) -> np.ndarray:
         """(N, V) int64 energies of poses (N, D) or (N, V, D), of all or the given segments."""
+        check_weights(weights, NativeWeights, self._sizes)
         poses, per_view = self._checked(poses)
         chosen = self._chosen(segments)
         count = len(poses)
@@ -244,8 +254,6 @@ class NativeEvaluator:
             "constants": np.array(constants, np.int64),
             "rows": np.empty((len(self.cameras), 2), np.int32),
         }
-        if arrays["constants"].shape != (len(self.cameras),):
-            raise ValueError("expected one constant per view")
         if kind == PLANES:
             arrays |= {
                 name: np.empty(starts["word_starts"], np.uint64) for name in ("plus", "minus")
@@ -254,7 +262,7 @@ class NativeEvaluator:
             arrays["maps"] = np.empty(starts["map_starts"], np.int16)
             arrays["sums"] = np.empty(starts["sum_starts"], np.int32)
         record = WeightsRecord(kind, **{name: array.ctypes.data for name, array in arrays.items()})
-        return NativeWeights(arrays["constants"], arrays, record)
+        return NativeWeights(arrays["constants"], arrays, record, self._sizes)
 
     def _column(self) -> np.ndarray:
         """Scratch for a column of words."""
@@ -285,7 +293,9 @@ class NativeEvaluator:
         key = None if segments is None else tuple(segments)
         chosen = self._segments.get(key)
         if chosen is None:
-            chosen = self._segments[key] = _Pointed(np.array(key, np.int32))
+            assert key is not None
+            checked = chosen_segments(self.body, key)
+            chosen = self._segments[key] = _Pointed(np.array(checked, np.int32))
         return chosen
 
     def _checked(self, poses: np.ndarray) -> tuple[np.ndarray, int]:

@@ -14,7 +14,16 @@ from ..body.body import Body
 from ..body.kinematics import joint_transforms, posed_segment
 from ..cameras.camera import Camera
 from ..energy.evaluator import Outline, WeightMaps
-from .model import GUARD_PX
+from .arguments import (
+    Sizes,
+    check_weights,
+    checked_level,
+    checked_maps,
+    chosen_segments,
+    fixed_segments,
+    picture_sizes,
+)
+from .model import GUARD_PX, check_cameras
 from .outline import find_outlines
 from .snapping import homogeneous_px, plane_distances, snapped_px
 
@@ -26,10 +35,12 @@ class ReferenceWeights:
     Attributes:
         maps: V arrays (H, W) int64.
         constants: (V,) int64.
+        sizes: of the V pictures.
     """
 
     maps: tuple[np.ndarray, ...]
     constants: np.ndarray
+    sizes: Sizes
 
 
 def clipped_polygon(corners: np.ndarray) -> np.ndarray:
@@ -83,18 +94,19 @@ class ReferenceEvaluator:
         level: which of the body's surfaces to draw.
 
     Raises:
-        ValueError: a camera with lens distortion.
+        ValueError: a camera with lens distortion or too large pictures, or no such level.
     """
 
     def __init__(self, body: Body, cameras: Sequence[Camera], level: int = 0):
-        if not all(camera.is_pinhole for camera in cameras):
-            raise ValueError("expected pinhole cameras")
-        self.body, self.cameras, self.level = body, tuple(cameras), level
+        check_cameras(cameras)
+        self.body, self.cameras, self.level = body, tuple(cameras), checked_level(body, level)
+        self._sizes = picture_sizes(cameras)
 
     def prepared(self, maps: WeightMaps) -> ReferenceWeights:
         """The maps as int64."""
-        wide = tuple(np.asarray(m, np.int64) for m in maps.maps)
-        return ReferenceWeights(wide, np.array(maps.constants, np.int64))
+        maps = checked_maps(maps, self._sizes)
+        wide = tuple(weight_map.astype(np.int64) for weight_map in maps.maps)
+        return ReferenceWeights(wide, maps.constants, self._sizes)
 
     def masked(
         self,
@@ -104,9 +116,9 @@ class ReferenceEvaluator:
         windows: np.ndarray | None = None,
     ) -> ReferenceWeights:
         """Weights under which the ``moving`` segments alone give the full energy."""
-        fixed = [s for s in range(len(self.body.segment_names)) if s not in set(moving)]
+        check_weights(weights, ReferenceWeights, self._sizes)
         maps, constants = [], []
-        covered = self.silhouettes(pose, fixed)
+        covered = self.silhouettes(pose, fixed_segments(self.body, moving))
         for v, (weight_map, picture) in enumerate(zip(weights.maps, covered, strict=True)):
             constants.append(weights.constants[v] + weight_map[picture].sum())
             left = np.where(picture, 0, weight_map)
@@ -116,12 +128,13 @@ class ReferenceEvaluator:
                 inside[y0:y1, x0:x1] = True
                 left = np.where(inside, left, 0)
             maps.append(left)
-        return ReferenceWeights(tuple(maps), np.array(constants, np.int64))
+        return ReferenceWeights(tuple(maps), np.array(constants, np.int64), self._sizes)
 
     def energies(
         self, weights: ReferenceWeights, poses: np.ndarray, segments: Sequence[int] | None = None
     ) -> np.ndarray:
         """(N, V) int64 energies of poses (N, D) or (N, V, D), of all or the given segments."""
+        check_weights(weights, ReferenceWeights, self._sizes)
         poses = np.asarray(poses, float)
         energies = np.empty((len(poses), len(self.cameras)), np.int64)
         for row, pose in zip(energies, poses, strict=True):
@@ -133,13 +146,12 @@ class ReferenceEvaluator:
         self, pose: np.ndarray, segments: Sequence[int] | None = None
     ) -> tuple[np.ndarray, ...]:
         """V boolean pictures (H, W), True where the body covers the pixel's centre."""
-        if segments is None:
-            segments = range(len(self.body.segment_names))
+        chosen = self._chosen(segments)
         pictures = []
         for view, camera in enumerate(self.cameras):
             width, height = camera.size
             picture = np.zeros((height, width), bool)
-            for corners in self._snapped_triangles(pose, view, segments):
+            for corners in self._snapped_triangles(pose, view, chosen):
                 rows, columns, covered = covered_pixels(corners, (height, width))
                 picture[rows, columns] |= covered
             pictures.append(picture)
@@ -149,7 +161,7 @@ class ReferenceEvaluator:
         self, pose: np.ndarray, segments: Sequence[int] | None = None, spacing_px: float = 1.0
     ) -> tuple[Outline, ...]:
         """V outlines of what the segments cover, in steps of at most ``spacing_px``."""
-        chosen = range(len(self.body.segment_names)) if segments is None else segments
+        chosen = self._chosen(segments)
         pictures = self.silhouettes(pose, chosen)
         views = self.body, self.level, self.cameras
         return find_outlines(*views, pose, pictures, chosen, spacing_px)
@@ -159,12 +171,13 @@ class ReferenceEvaluator:
 
         The whole guard region where a segment leaves it or comes too near.
         """
+        chosen = self._chosen(segments)
         boxes = np.zeros((len(poses), len(self.cameras), 4), np.int32)
         guard = int(GUARD_PX)
         for n, pose in enumerate(np.asarray(poses, float)):
             for v in range(len(self.cameras)):
                 h = np.concatenate(
-                    [np.zeros((0, 3)), *(self._projected(pose, v, s) for s in segments)]
+                    [np.zeros((0, 3)), *(self._projected(pose, v, s) for s in chosen)]
                 )
                 if not (plane_distances(h) >= 0).all():
                     boxes[n, v] = -guard, -guard, guard, guard
@@ -187,6 +200,10 @@ class ReferenceEvaluator:
             inside = (plane_distances(h) >= 0).all(axis=1)
             vertices[v, inside] = snapped_px(h[inside])
         return vertices
+
+    def _chosen(self, segments: Sequence[int] | None) -> Sequence[int]:
+        everything = range(len(self.body.segment_names))
+        return everything if segments is None else chosen_segments(self.body, segments)
 
     def _projected(self, pose: np.ndarray, view: int, segment: int) -> np.ndarray:
         """(n, 3) homogeneous px of a segment's vertices."""

@@ -25,6 +25,7 @@ from ..footage.patterns import for_camera
 from ..footage.pictures import colour_picture, read_picture
 from ..footage.video import Video
 from ..progress import SILENCE, Progress
+from ..rendering.model import GUARD_PX
 from ..silhouettes.cleaning import Cleaning
 from ..silhouettes.difference import Difference, DifferenceSettings
 from ..silhouettes.masks import ReadyMasks, mask_from_picture
@@ -125,14 +126,31 @@ class Views:
         }
 
     def reduced_by(self, factors: Sequence[int]) -> "Views":
-        """The views with pictures reduced by one whole factor each."""
+        """The views with pictures reduced by one whole factor each.
+
+        Raises:
+            MocapError: pictures that are still larger than what can be drawn.
+        """
         views = [
             replace(view, reduction=Reduction(factor))
             for view, factor in zip(self.views, factors, strict=True)
         ]
+        for view in views:
+            _check_drawable(view)
         sizes = (f"{view.camera.name} {'{} x {}'.format(*view.camera.size)}" for view in views)
         _log.info("tracked at px: %s", ", ".join(sizes))
         return replace(self, views=tuple(views))
+
+
+def _check_drawable(view: View) -> None:
+    width, height = view.camera.size
+    if max(width, height) > GUARD_PX:
+        raise MocapError(
+            f"would be tracked at {width} x {height} px, and at most {GUARD_PX:.0f} can be drawn",
+            "make the footage smaller, and calibrate it anew or name its scale under [cameras] "
+            "adjust",
+            file=view.place, camera=view.camera.name,
+        )  # fmt: skip
 
 
 class TooFewCameras(MocapError):

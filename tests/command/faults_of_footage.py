@@ -8,6 +8,7 @@ import cv2
 import numpy as np
 from circumstances import ON_LINUX, ON_UNIX, bound_by_permissions
 from faults import Chapter, fit_words, replace_text
+from faults_of_calibration import of_camera
 from silhouette_mocap.core.footage.video_writing import write_video
 
 FILES = Chapter("The footage, its files")
@@ -61,6 +62,19 @@ def _(folder: Path):
 )
 def _(folder: Path):
     mask(folder, "cam_02", 2).unlink()
+
+
+@FILES.add(
+    "pictures larger than what can be drawn",
+    "masks/cam_02/{frame:06d}.png, camera cam_02: would be tracked at 16240 x 4 px",
+)
+def _(folder: Path):
+    picture = np.zeros((4, 16240), np.uint8)
+    picture[:, 8000:8010] = 255
+    for frame in range(4):
+        cv2.imwrite(str(mask(folder, "cam_02", frame)), picture)
+    of_camera(folder, "cam_02", "size", "[16240, 4]")
+    of_camera(folder, "cam_02", "matrix", "[[9000, 0, 8120], [0, 9000, 2], [0, 0, 1]]")
 
 
 @FILES.add(

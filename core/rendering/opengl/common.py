@@ -10,6 +10,16 @@ from ...body.body import Body
 from ...body.kinematics import skinned_segments
 from ...cameras.camera import Camera
 from ...energy.evaluator import Outline, WeightMaps
+from ..arguments import (
+    Sizes,
+    check_weights,
+    checked_level,
+    checked_maps,
+    chosen_segments,
+    fixed_segments,
+    picture_sizes,
+)
+from ..model import check_cameras
 from ..outline import find_outlines
 from .canvas import DeviceMesh, Range, drawing_range
 from .context import GlThread, no_opengl, shared_thread
@@ -28,11 +38,13 @@ class MaskedMaps:
         maps: V arrays (H, W) int16; 0 where fixed parts cover and outside of the windows.
         constants: (V,) int64, the energy of an empty rendering, fixed parts included.
         windows: (V, 4) px x0, y0, x1, y1; nothing lies outside.
+        sizes: of the V pictures.
     """
 
     maps: tuple[np.ndarray, ...]
     constants: np.ndarray
     windows: np.ndarray
+    sizes: Sizes
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,6 +61,11 @@ class HeldWeights:
     def constants(self) -> np.ndarray:
         """(V,) int64, the energy of an empty rendering, fixed parts included."""
         return self.masked.constants
+
+    @property
+    def sizes(self) -> Sizes:
+        """(width, height) px of the V pictures."""
+        return self.masked.sizes
 
 
 Held = TypeVar("Held", bound=HeldWeights)
@@ -84,12 +101,14 @@ class OpenGLBase(Generic[Held]):
         thread: the thread with the context; by default the one that all share.
 
     Raises:
-        ValueError: a camera with lens distortion, or none.
+        ValueError: a camera with lens distortion or too large pictures, or no such level.
         MocapError: there is no OpenGL, or it is too old, or a picture is too large for it.
     """
 
     version = (3, 3)
     """Of OpenGL, at least."""
+    weights_kind: type[HeldWeights] = HeldWeights
+    """What `prepared` makes."""
 
     def __init__(
         self,
@@ -98,15 +117,15 @@ class OpenGLBase(Generic[Held]):
         level: int = 0,
         thread: GlThread | None = None,
     ):
-        if not cameras or not all(camera.is_pinhole for camera in cameras):
-            raise ValueError("expected at least one camera, all of them pinhole")
-        if skinned_segments(body, body.surfaces[level]).any():
+        check_cameras(cameras)
+        if skinned_segments(body, body.surfaces[checked_level(body, level)]).any():
             raise no_opengl("it draws rigid segments only")
         self.body, self.cameras, self.level = body, tuple(cameras), level
         self.thread = thread or shared_thread()
         check_version(self.thread, self.version)
         self._range = check_sizes(self.thread, cameras)
-        self._sizes = np.array([camera.size for camera in cameras], np.int64)
+        self._picture_sizes = picture_sizes(cameras)
+        self._sizes = np.array(self._picture_sizes, np.int64)
         self._placer = Placer(body, cameras, level)
         self._meshes: dict[tuple[int, ...], DeviceMesh] = {}
 
@@ -125,6 +144,7 @@ class OpenGLBase(Generic[Held]):
 
         ``pose`` may be (V, D) as well, one pose per view.
         """
+        self._check(weights)
         return self._held(self._masked(weights.masked, pose, moving, windows))
 
     def transforms(self, poses: np.ndarray) -> np.ndarray:
@@ -158,6 +178,10 @@ class OpenGLBase(Generic[Held]):
         views = self.body, self.level, self.cameras
         return find_outlines(*views, pose, pictures, self._chosen(segments), spacing_px)
 
+    def _check(self, weights: Held) -> None:
+        """Refuses with a ValueError weights that are not the mode's own, or of other sizes."""
+        check_weights(weights, self.weights_kind, self._picture_sizes)
+
     def _held(self, masked: MaskedMaps) -> Held:
         raise NotImplementedError
 
@@ -167,14 +191,9 @@ class OpenGLBase(Generic[Held]):
         raise NotImplementedError
 
     def _whole(self, maps: WeightMaps) -> MaskedMaps:
-        shapes = [camera.size[::-1] for camera in self.cameras]
-        if [np.shape(weight_map) for weight_map in maps.maps] != shapes:
-            raise ValueError(f"expected weight maps of shapes {shapes}")
-        constants = np.array(maps.constants, np.int64)
-        if constants.shape != (len(shapes),):
-            raise ValueError("expected one constant per view")
-        narrow = tuple(np.ascontiguousarray(weight_map, np.int16) for weight_map in maps.maps)
-        return MaskedMaps(narrow, constants, clipped_windows(self._sizes, None))
+        maps = checked_maps(maps, self._picture_sizes)
+        windows = clipped_windows(self._sizes, None)
+        return MaskedMaps(maps.maps, maps.constants, windows, self._picture_sizes)
 
     def _masked(
         self,
@@ -183,7 +202,7 @@ class OpenGLBase(Generic[Held]):
         moving: Sequence[int],
         windows: np.ndarray | None,
     ) -> MaskedMaps:
-        fixed = sorted(set(range(len(self.body.segment_names))) - {int(s) for s in moving})
+        fixed = fixed_segments(self.body, moving)
         within = clipped_windows(self._sizes, windows)
         low = np.maximum(within[:, :2], before.windows[:, :2])
         high = np.maximum(np.minimum(within[:, 2:], before.windows[:, 2:]), low)
@@ -195,7 +214,7 @@ class OpenGLBase(Generic[Held]):
             part = np.s_[low[v, 1] : high[v, 1], low[v, 0] : high[v, 0]]
             left[part] = np.where(picture[part], 0, weight_map[part])
             maps.append(left)
-        return MaskedMaps(tuple(maps), constants, np.concatenate([low, high], axis=1))
+        return MaskedMaps(tuple(maps), constants, np.concatenate([low, high], axis=1), before.sizes)
 
     def _placed(self, transforms: np.ndarray, segments: tuple[int, ...], tiles: Tiles) -> Placement:
         """The segments in the tiles' windows, of transforms (V or 1, N, J, 3, 4)."""
@@ -213,11 +232,8 @@ class OpenGLBase(Generic[Held]):
         return self._meshes[segments]
 
     def _chosen(self, segments: Sequence[int] | None) -> tuple[int, ...]:
-        count = len(self.body.segment_names)
-        chosen = tuple(range(count)) if segments is None else tuple(map(int, segments))
-        if any(not 0 <= segment < count for segment in chosen):
-            raise ValueError(f"expected segments below {count}, got {chosen}")
-        return chosen
+        everything = tuple(range(len(self.body.segment_names)))
+        return everything if segments is None else chosen_segments(self.body, segments)
 
     def _checked(self, poses: np.ndarray) -> np.ndarray:
         """float64 poses (N, D) or (N, V, D)."""

@@ -60,6 +60,7 @@ class OpenGLEvaluator(OpenGLBase[GpuWeights]):
     """
 
     version = VERSION
+    weights_kind = GpuWeights
 
     def __init__(self, *arguments, **keywords):
         super().__init__(*arguments, **keywords)
@@ -70,6 +71,7 @@ class OpenGLEvaluator(OpenGLBase[GpuWeights]):
         self, weights: GpuWeights, poses: np.ndarray, segments: Sequence[int] | None = None
     ) -> np.ndarray:
         """(N, V) int64 energies of poses (N, D) or (N, V, D), of all or the given segments."""
+        self._check(weights)
         poses, chosen = self._checked(poses), self._chosen(segments)
         energies = np.repeat(weights.constants[None], len(poses), axis=0)
         for begin in range(0, len(poses), _MOST_CANDIDATES):

@@ -109,6 +109,8 @@ class PaperEvaluator(OpenGLBase[PaperWeights]):
     Arguments and faults are those of `OpenGLBase`.
     """
 
+    weights_kind = PaperWeights
+
     def __init__(self, *arguments, **keywords):
         super().__init__(*arguments, **keywords)
         self._programs = self.thread.kept(StencilPrograms)
@@ -118,6 +120,7 @@ class PaperEvaluator(OpenGLBase[PaperWeights]):
         self, weights: PaperWeights, poses: np.ndarray, segments: Sequence[int] | None = None
     ) -> np.ndarray:
         """(N, V) int64 energies of poses (N, D) or (N, V, D), of all or the given segments."""
+        self._check(weights)
         poses, chosen = self._checked(poses), self._chosen(segments)
         energies = np.repeat(weights.constants[None], len(poses), axis=0)
         for begin in range(0, len(poses), _PLACED_AT_ONCE):
