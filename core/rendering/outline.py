@@ -10,6 +10,7 @@ derivative of its image is that of the skeleton (Rosenhahn et al., IJCV 73, 2007
 """
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
 
@@ -28,25 +29,40 @@ BESIDE_PX = 0.75
 NOWHERE = Outline(np.zeros(0, np.int32), np.zeros((0, 3)), np.zeros((0, 2)), np.zeros((0, 2)))
 
 
+@dataclass(frozen=True, eq=False)
+class Posed:
+    """Some segments of a body in a pose.
+
+    Attributes:
+        body: the model.
+        level: which of its surfaces.
+        pose: (D,), or (V, D) with one pose per view.
+        segments: indices.
+    """
+
+    body: Body
+    level: int
+    pose: np.ndarray
+    segments: Sequence[int]
+
+    def transforms(self, views: int) -> np.ndarray:
+        """(V, J, 3, 4) world_from_joint of each of V views."""
+        pose = np.asarray(self.pose, float)
+        found = joint_transforms(self.body, np.atleast_2d(pose))
+        return np.broadcast_to(found, (views, *found.shape[1:]))
+
+
 def find_outlines(
-    body: Body,
-    level: int,
-    cameras: Sequence[Camera],
-    pose: np.ndarray,
-    pictures: Sequence[np.ndarray],
-    segments: Sequence[int],
-    spacing_px: float,
+    posed: Posed, cameras: Sequence[Camera], pictures: Sequence[np.ndarray], spacing_px: float
 ) -> tuple[Outline, ...]:
-    """V outlines of the segments in a pose (D,) or (V, D), given what they cover.
+    """V outlines of the segments, given the V pictures (H, W) of what they cover.
 
     A segment that a camera sees from too near, or far outside its picture, has no points there.
     """
-    pose = np.asarray(pose, float)
-    transforms = joint_transforms(body, np.atleast_2d(pose))
     outlines = []
-    for view, (camera, picture) in enumerate(zip(cameras, pictures, strict=True)):
-        placed = transforms[view if pose.ndim == 2 else 0]
-        parts = [_samples(body, level, camera, placed, s, spacing_px) for s in segments]
+    views = zip(posed.transforms(len(cameras)), cameras, pictures, strict=True)
+    for placed, camera, picture in views:
+        parts = [_samples(posed, placed, camera, s, spacing_px) for s in posed.segments]
         outlines.append(_kept(parts, picture))
     return tuple(outlines)
 
@@ -68,11 +84,12 @@ def _is_wholly_seen(camera: Camera, vertices: np.ndarray, carried: np.ndarray) -
 
 
 def _samples(
-    body: Body, level: int, camera: Camera, placed: np.ndarray, segment: int, spacing_px: float
+    posed: Posed, placed: np.ndarray, camera: Camera, segment: int, spacing_px: float
 ) -> Outline:
-    """All samples of a segment's contour edges, hidden ones too."""
-    triangles, records = _meshes(body.surfaces[level])[segment]
-    vertices, carried = posed_segment(body, body.surfaces[level], placed, segment)
+    """All samples of a segment's contour edges, hidden ones too; joints as ``placed`` (J, 3, 4)."""
+    body, surface = posed.body, posed.body.surfaces[posed.level]
+    triangles, records = _meshes(surface)[segment]
+    vertices, carried = posed_segment(body, surface, placed, segment)
     if not len(triangles) or not _is_wholly_seen(camera, vertices, carried):
         return NOWHERE
     h = homogeneous_px(camera.projection, carried, vertices)

@@ -24,7 +24,7 @@ from .arguments import (
     picture_sizes,
 )
 from .model import GUARD_PX, check_cameras
-from .outline import find_outlines
+from .outline import Posed, find_outlines
 from .snapping import homogeneous_px, plane_distances, snapped_px
 
 
@@ -163,8 +163,8 @@ class ReferenceEvaluator:
         """V outlines of what the segments cover, in steps of at most ``spacing_px``."""
         chosen = self._chosen(segments)
         pictures = self.silhouettes(pose, chosen)
-        views = self.body, self.level, self.cameras
-        return find_outlines(*views, pose, pictures, chosen, spacing_px)
+        posed = Posed(self.body, self.level, pose, chosen)
+        return find_outlines(posed, self.cameras, pictures, spacing_px)
 
     def bounds(self, poses: np.ndarray, segments: Sequence[int]) -> np.ndarray:
         """(N, V, 4) int: x0, y0, x1, y1 (exclusive), px that the segments can cover, unclipped.

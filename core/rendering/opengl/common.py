@@ -20,7 +20,7 @@ from ..arguments import (
     picture_sizes,
 )
 from ..model import check_cameras
-from ..outline import find_outlines
+from ..outline import Posed, find_outlines
 from .canvas import DeviceMesh, Range, drawing_range
 from .context import GlThread, no_opengl, shared_thread
 from .meshes import segment_mesh
@@ -175,8 +175,8 @@ class OpenGLBase(Generic[Held]):
     ) -> tuple[Outline, ...]:
         """V outlines of what the segments cover, in steps of at most ``spacing_px``."""
         pictures = self.silhouettes(pose, segments)
-        views = self.body, self.level, self.cameras
-        return find_outlines(*views, pose, pictures, self._chosen(segments), spacing_px)
+        posed = Posed(self.body, self.level, pose, self._chosen(segments))
+        return find_outlines(posed, self.cameras, pictures, spacing_px)
 
     def _check(self, weights: Held) -> None:
         """Refuses with a ValueError weights that are not the mode's own, or of other sizes."""
