@@ -22,9 +22,12 @@ from silhouette_mocap.core.native.build import SOURCES
 ROOT = Path(__file__).resolve().parents[2]
 TESTS = [
     f"tests/core/rendering/test_{name}.py"
-    for name in ("native_evaluator", "closed_surfaces", "outline", "invariants")
+    for name in (
+        *("native_evaluator", "closed_surfaces", "skinned_surfaces", "edge_records", "outline"),
+        *("invariants", "invariants_meshes"),
+    )
 ]
-TESTS += ["tests/core/rendering/test_invariants_meshes.py", "tests/core/native"]
+TESTS += ["tests/core/native"]
 FEW = "every_side or triangles_apart or another_order or fixed_otherwise or more_crossings"
 """Tests enough for valgrind, which takes fifty times as long."""
 
