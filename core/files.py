@@ -2,6 +2,7 @@
 
 import errno
 import logging
+import os
 import re
 import stat
 from collections.abc import Iterator
@@ -46,13 +47,26 @@ def made_folder(path: Path) -> Path:
     """``path``, made where it is missing.
 
     Raises:
-        MocapError: it cannot be made.
+        MocapError: it cannot be made, or is there and cannot be written to.
     """
     try:
         path.mkdir(parents=True, exist_ok=True)
+        if not os.access(path, os.W_OK):
+            raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
     except OSError as error:
         raise unwritable(path, error) from error
     return path
+
+
+def check_writable(path: Path) -> None:
+    """Refuses a file that could not be written; its folder is made where it is missing.
+
+    Raises:
+        MocapError: it is a folder, or its folder cannot be made or written to.
+    """
+    if path.is_dir():
+        raise MocapError("is a folder", "give a file", file=path)
+    made_folder(path.parent)
 
 
 def check_ordinary(path: Path, camera: str | None = None, frame: int | None = None) -> None:

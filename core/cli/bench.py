@@ -10,14 +10,13 @@ from ..bench.energy_report import as_dict
 from ..bench.markdown import whole_report
 from ..bench.prototypes import are_in
 from ..errors import MocapError
-from ..files import made_folder
+from ..files import check_writable, made_folder
 from ..motion.export_request import Exporter
 from ..results.report import write_report
 from .console import say
 
 EXAMPLE = "silhouette-mocap bench energy --json energy.json --out out/bench"
 TOPICS = ("energy",)
-_BESIDE = Path(__file__).resolve().parents[3] / "shared" / "prototypes"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -28,9 +27,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--out", type=Path, metavar="DIR", help="write tables (Markdown) and plots (SVG) there"
     )
     parser.add_argument(
-        "--prototypes", type=Path, metavar="DIR",
-        help="frozen baselines to compare with (default: ../shared/prototypes, if it is there)",
-    )  # fmt: skip
+        "--prototypes", type=Path, metavar="DIR", help="frozen baselines to compare with, too"
+    )
     parser.add_argument(
         "--quick", action="store_true", help="one resolution and few turns, for a first look"
     )
@@ -38,12 +36,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace, exporter: Exporter | None) -> int:
     """Measures, prints and writes."""
-    settings = replace(
-        QUICK if arguments.quick else EnergySettings(), prototypes=_prototypes(arguments.prototypes)
-    )
-    for folder in _folders(arguments):
-        # before minutes of work
-        made_folder(folder)
+    _check_prototypes(arguments.prototypes)
+    settings = QUICK if arguments.quick else EnergySettings()
+    settings = replace(settings, prototypes=arguments.prototypes)
+    # before minutes of work
+    if arguments.out is not None:
+        made_folder(arguments.out)
+    if arguments.json is not None:
+        check_writable(arguments.json)
     figures = energy_figures(settings, arguments.console)
     say(whole_report(figures))
     if arguments.json is not None:
@@ -55,15 +55,6 @@ def run(arguments: argparse.Namespace, exporter: Exporter | None) -> int:
     return 0
 
 
-def _folders(arguments: argparse.Namespace) -> list[Path]:
-    places = (arguments.out, arguments.json and arguments.json.parent)
-    return [place for place in places if place is not None]
-
-
-def _prototypes(asked: Path | None) -> Path | None:
-    """The folder of the prototypes; None where they are neither asked for nor beside."""
-    if asked is None:
-        return _BESIDE if are_in(_BESIDE) else None
-    if not are_in(asked):
-        raise MocapError("does not hold the prototypes", "check the path", file=asked)
-    return asked
+def _check_prototypes(folder: Path | None) -> None:
+    if folder is not None and not are_in(folder):
+        raise MocapError("does not hold the prototypes", "check the path", file=folder)
