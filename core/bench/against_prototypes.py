@@ -8,11 +8,14 @@ from ..energy.weight_maps import xor_weight_maps
 from ..errors import MocapError
 from ..rendering.native import NativeEvaluator
 from ..silhouettes.silhouette import Silhouette
-from .prototypes import LISTS, PARITY, WINDING, Prototypes, their_poses
+from .machine import code_path
+from .prototypes import LISTS, PARITY, WINDING, Asked, Prototypes, their_poses
 from .rows import EXACT, LOD
 from .stage import PART_SPREAD, WHOLE_SPREAD, candidates_about
 from .turns import Rates, Turns, Variant, measured
 
+V3, ON_V3 = 3, "_v3"
+"""The code path for x86-64-v3, which many processors have at best, and the ending of its rows."""
 PARTS = {"whole": tuple(range(16)), "limb": (4, 5, 6), "hand": (6,)}
 WINDOW_SIDES = {"whole": None, "limb": 128, "hand": 64}
 METHODS = {"winding": WINDING, "parity": PARITY, "lists": LISTS}
@@ -35,6 +38,9 @@ def prototype_rates(
 
 def title(name: str) -> str:
     """A row's name in tables."""
+    for level, mesh in ((EXACT, "full"), (LOD, "coarse")):
+        if name == level + ON_V3:
+            return f"native, {mesh} mesh, x86-64-v3"
     words = name.removeprefix("prototype_").replace("kern_c_", "kern.c, ").replace("_", " ")
     if name == GL_EVAL:
         return "prototype gl_eval.py, as in the paper, full mesh"
@@ -46,21 +52,25 @@ class _Comparison:
     """One part at one size: the silhouettes, and every row's way to the energies."""
 
     def __init__(self, prototypes: Prototypes, size: tuple[int, int], part: str):
-        self.prototypes, self.size, self.part = prototypes, size, part
+        self.prototypes, self.part = prototypes, part
         self.body, self.cameras = prototypes.body(), prototypes.cameras(size)
         self.native = {
             EXACT: NativeEvaluator(self.body, self.cameras, 1),
             LOD: NativeEvaluator(self.body, self.cameras, 0),
         }
+        if code_path() > V3:
+            self.native |= {
+                EXACT + ON_V3: NativeEvaluator(self.body, self.cameras, 1, processor=V3),
+                LOD + ON_V3: NativeEvaluator(self.body, self.cameras, 0, processor=V3),
+            }
         seen, self.pose = (their_poses(prototypes.scene.pose(t)) for t in (_SEEN, _POSE))
-        self.observed = self._drawn(seen)
-        self.segments = PARTS[part]
-        rest = [s for s in range(16) if s not in self.segments]
-        self.fixed = self._drawn(self.pose, rest) if rest else None
+        rest = [s for s in range(16) if s not in PARTS[part]]
+        fixed = self._drawn(self.pose, rest) if rest else None
+        self.asked = Asked(size, self._drawn(seen), fixed, PARTS[part])
 
     def rates(self, turns: Turns, note: Callable[[str], None]) -> Rates:
         whole = self.part == "whole"
-        moved = range(35) if whole else self.prototypes.dofs_of(self.segments)
+        moved = range(35) if whole else self.prototypes.dofs_of(self.asked.segments)
         spread = WHOLE_SPREAD if whole else PART_SPREAD
         variants = [*self._native_variants(), *self._kernel_variants()]
         try:
@@ -70,13 +80,13 @@ class _Comparison:
         return measured(variants, candidates_about(self.pose, moved, spread, turns.poses), turns)
 
     def _native_variants(self) -> list[Variant]:
-        seen = np.ones(self.observed.shape[1:], bool)
-        maps = xor_weight_maps([Silhouette(p.view(bool), seen) for p in self.observed])
+        seen = np.ones(self.asked.observed.shape[1:], bool)
+        maps = xor_weight_maps([Silhouette(p.view(bool), seen) for p in self.asked.observed])
         found = []
         for name, evaluator in self.native.items():
             weights, segments = evaluator.prepared(maps), None
-            if self.fixed is not None:
-                segments = self.segments
+            if self.asked.fixed is not None:
+                segments = self.asked.segments
                 weights = evaluator.masked(weights, self.pose, segments)
             found.append(
                 Variant(
@@ -92,9 +102,7 @@ class _Comparison:
         found = []
         for mesh in ("full", "coarse"):
             for name, method in METHODS.items():
-                energies, ready = self.prototypes.energies(
-                    mesh, self.size, self.observed, self.fixed, self.segments, method
-                )
+                energies, ready = self.prototypes.energies(mesh, method, self.asked)
                 middle = their_poses(self.pose)
                 found.append(
                     Variant(
@@ -110,17 +118,15 @@ class _Comparison:
         exact, side = self.native[EXACT], WINDOW_SIDES[self.part]
         windows = None
         if side is not None:
-            box = exact.bounds(self.pose[None], self.segments)[0]
-            half = side * self.size[1] // 480
+            box = exact.bounds(self.pose[None], self.asked.segments)[0]
+            half = side * self.asked.size[1] // 480
             middles = (box[:, :2] + box[:, 2:]) // 2
             windows = np.concatenate([middles - half, middles + half], axis=1)
 
         def transforms(pose: np.ndarray) -> np.ndarray:
             return exact.transforms(their_poses(pose)[None])[0]
 
-        energies = self.prototypes.paper_energies(
-            self.size, self.observed, self.fixed, windows, self.segments, transforms
-        )
+        energies = self.prototypes.paper_energies(self.asked, windows, transforms)
         return Variant(GL_EVAL, energies, their_poses)
 
     def _drawn(self, pose: np.ndarray, segments=None) -> np.ndarray:

@@ -15,9 +15,11 @@ from . import against_prototypes as prototype
 from .cameras import CameraCosts, camera_costs
 from .levels import FIT, LevelCheck, level_check
 from .machine import machine
+from .processes import two_process_ratios
 from .prototypes import FILES, Prototypes, are_in
 from .rows import (
     EXACT,
+    LEVELS,
     LOD,
     PAPER_GL,
     coarse_level,
@@ -27,13 +29,11 @@ from .rows import (
     opengl_renderer,
     opengl_rows,
 )
-from .sequences import SEQUENCES, sequence
+from .sequences import SEQUENCES
 from .stage import PAPER_SIZE, studio
-from .table1 import CELLS, WAYS, Measured, Scene, Teller, table1, triangles
+from .table1 import CELLS, PARTS, WAYS, Measured, Teller, scene_of, table1, triangles
 from .table2 import SequenceFits, table2
 from .turns import Rates, Turns
-
-_POSE_FRAME, _SEEN_FRAME = 40, 38
 
 
 @dataclass(frozen=True)
@@ -62,7 +62,14 @@ class EnergySettings:
     def steps(self) -> int:
         """How many steps are told to the progress."""
         cells = len(CELLS) * len(WAYS) * len(self.sizes)
-        return cells + 1 + self.fits + len(SEQUENCES) * self.frames + len(self.comparisons)
+        return (
+            cells
+            + len(self.sizes)
+            + 1
+            + self.fits
+            + len(SEQUENCES) * self.frames
+            + len(self.comparisons)
+        )
 
     @property
     def comparisons(self) -> list[tuple[tuple[int, int], str]]:
@@ -85,6 +92,7 @@ class EnergyFigures:
         machine: what on.
         titles: of the rows, by their names.
         table1: by size (``320x240``).
+        processes: by size, level and part, two processes at once as a multiple of one's speed.
         cameras: cost against the number of cameras, by row.
         levels: what the coarse mesh changes.
         table2: by sequence and row.
@@ -96,6 +104,7 @@ class EnergyFigures:
     machine: dict
     titles: dict[str, str]
     table1: dict[str, Measured]
+    processes: dict[str, dict[str, dict[str, float | None]]]
     cameras: dict[str, CameraCosts]
     levels: LevelCheck
     table2: dict[str, dict[str, SequenceFits]]
@@ -120,14 +129,16 @@ def energy_figures(settings: EnergySettings, progress: Progress) -> EnergyFigure
     tell = Teller(note, lambda: progress.advance(None))
     facts = machine(opengl_renderer())
     body = template("sixteen_segment")
-    motion = sequence(body, "A", _POSE_FRAME + 1)
-    scene = Scene(body, motion[_POSE_FRAME], motion[_SEEN_FRAME])
+    scene = scene_of(body)
     rows = [*opengl_rows(note), *hull_rows(), *native_rows()]
     plain = [row for row in rows if row.name in (PAPER_GL, EXACT, LOD)]
     progress.begin("bench", settings.steps)
     tables = {}
     for size in settings.sizes:
         tables[named(size)] = table1(scene, size, rows, settings.turns, tell)
+    processes = {
+        named(size): _process_ratios(size, settings.turns, tell) for size in settings.sizes
+    }
     costs = camera_costs(scene, settings.camera_counts, plain, settings.turns)
     tell.advance()
     cameras = studio()
@@ -137,6 +148,7 @@ def energy_figures(settings: EnergySettings, progress: Progress) -> EnergyFigure
         machine=facts,
         titles={row.name: row.title for row in rows},
         table1=tables,
+        processes=processes,
         cameras=costs,
         levels=levels,
         table2=fits,
@@ -147,6 +159,17 @@ def energy_figures(settings: EnergySettings, progress: Progress) -> EnergyFigure
         },
         notes=tuple(notes),
     )
+
+
+def _process_ratios(size: tuple[int, int], turns: Turns, tell: Teller) -> dict:
+    """Of two processes; None each where none can be started."""
+    try:
+        found = two_process_ratios(size, turns)
+    except (MocapError, OSError) as error:
+        tell.note(f"no figures for two processes: {error}")
+        found = {level: dict.fromkeys(PARTS) for level in LEVELS}
+    tell.advance()
+    return found
 
 
 def named(size: tuple[int, int]) -> str:

@@ -6,15 +6,11 @@ import numpy as np
 
 from . import against_prototypes as prototype
 from .energy import EnergyFigures
-from .rows import EXACT, LOD, PAPER_GL, TWO_THREADS, WEIGHTED
-from .table1 import PAPER_RATES, WAYS, Measured
+from .rows import EXACT, LEVELS, LOD, PAPER_GL, TWO_THREADS, WEIGHTED
+from .table1 import PAPER_RATES, PARTS, PRERENDERED, WAYS, Measured
 from .table2 import PAPER_EVALUATIONS, PAPER_SECONDS
 from .turns import Rates
 
-LEVELS = {"exact": EXACT, "lod": LOD}
-PARTS = {"whole": "full", "limb": "limb", "hand": "hand"}
-"""Part to the cell of Table 1 that shows it."""
-PRERENDERED = WAYS[1]
 Ratios = dict[str, dict[str, float | None]]
 
 
@@ -61,17 +57,23 @@ def _ratios(figures: EnergyFigures) -> dict:
     threads = {size: two_thread_ratios(table) for size, table in tables}
     weighted = {size: weighted_ratios(table) for size, table in tables}
     kern_c = {size: ratios_to_kern_c(parts) for size, parts in comparisons}
+    ending = v3_ending(figures.machine)
+    on_v3 = {size: ratios_to_kern_c(parts, ending) for size, parts in comparisons}
     gl_eval = {size: ratios_to_gl_eval(parts) for size, parts in comparisons}
     return {
         "ratio_to_paper_gl": next(iter(paper_gl.values())),
         "ratio_to_kern_c": next(iter(kern_c.values()), _nothing()),
+        "ratio_to_kern_c_v3": next(iter(on_v3.values()), _nothing()),
         "ratio_to_gl_eval": next(iter(gl_eval.values()), _nothing()),
         "two_threads": next(iter(threads.values())),
+        "two_processes": next(iter(figures.processes.values())),
         "weighted_ratio": {size: ratios["lod"]["whole"] for size, ratios in weighted.items()},
         "ratio_to_paper_gl_by_size": paper_gl,
         "ratio_to_kern_c_by_size": kern_c,
+        "ratio_to_kern_c_v3_by_size": on_v3,
         "ratio_to_gl_eval_by_size": gl_eval,
         "two_threads_by_size": threads,
+        "two_processes_by_size": figures.processes,
         "weighted_ratio_by_part": weighted,
     }
 
@@ -108,12 +110,27 @@ def two_thread_ratios(table: Measured) -> Ratios:
     return _own_ratios(table, TWO_THREADS)
 
 
-def ratios_to_kern_c(parts: dict[str, Rates]) -> Ratios:
-    """Exact against the winding kernel on the full mesh, coarse against the best on the coarse."""
+def ratios_to_kern_c(parts: dict[str, Rates], ending: str | None = "") -> Ratios:
+    """Exact against the winding kernel on the full mesh, coarse against the best on the coarse.
+
+    Args:
+        parts: rates by part.
+        ending: of our rows' names; None where they were not measured.
+    """
+    if ending is None:
+        return _nothing()
+    exact, coarse = EXACT + ending, LOD + ending
     return {
-        "exact": {part: rates.ratio(EXACT, prototype.KERN_EXACT) for part, rates in parts.items()},
-        "lod": {part: _to_best(rates, prototype.KERN_COARSE) for part, rates in parts.items()},
+        "exact": {part: rates.ratio(exact, prototype.KERN_EXACT) for part, rates in parts.items()},
+        "lod": {
+            part: _to_best(rates, coarse, prototype.KERN_COARSE) for part, rates in parts.items()
+        },
     }
+
+
+def v3_ending(machine: dict) -> str | None:
+    """How rows on the x86-64-v3 code path end; None where the processor does not have it."""
+    return {"x86-64-v4": prototype.ON_V3, "x86-64-v3": ""}.get(machine["code_path"])
 
 
 def ratios_to_gl_eval(parts: dict[str, Rates]) -> Ratios:
@@ -124,9 +141,9 @@ def ratios_to_gl_eval(parts: dict[str, Rates]) -> Ratios:
     }
 
 
-def _to_best(rates: Rates, names: Sequence[str]) -> float | None:
+def _to_best(rates: Rates, name: str, names: Sequence[str]) -> float | None:
     best = rates.best(names)
-    return None if best is None else rates.ratio(LOD, best)
+    return None if best is None else rates.ratio(name, best)
 
 
 def _own_ratios(table: Measured, suffix: str) -> Ratios:

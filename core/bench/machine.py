@@ -4,11 +4,26 @@ import os
 import platform
 from pathlib import Path
 
+from ..native.library import load
 from ..results.report import versions
+
+CODE_PATHS = {1: "base", 3: "x86-64-v3", 4: "x86-64-v4"}
+"""The kernel's, by their numbers in it."""
+
+
+def code_path() -> int:
+    """Number of the best of the kernel's code paths that this processor has.
+
+    Raises:
+        MocapError: the kernel is missing.
+    """
+    return load().sm_processor()
 
 
 def machine(renderer: str | None) -> dict:
-    """Processor, cores, load, system and versions; ``renderer`` is OpenGL's name for what draws.
+    """Processor, the kernel's code path, cores, load, system and versions.
+
+    ``renderer`` is OpenGL's name for what draws.
 
     Asked before anything is measured, the load is that of others: processes that want a core.
     """
@@ -17,8 +32,14 @@ def machine(renderer: str | None) -> dict:
     except AttributeError:
         cores = os.cpu_count() or 1
     load = os.getloadavg()[0] if hasattr(os, "getloadavg") else None
-    facts = {"processor": _processor(), "cores": cores, "load_before": load, "opengl": renderer}
-    return {**facts, **versions()}
+    return {
+        "processor": _processor(),
+        "code_path": CODE_PATHS[code_path()],
+        "cores": cores,
+        "load_before": load,
+        "opengl": renderer,
+        **versions(),
+    }
 
 
 def machine_words(facts: dict) -> str:
@@ -26,7 +47,9 @@ def machine_words(facts: dict) -> str:
     drawn = f", OpenGL by {facts['opengl']}" if facts["opengl"] else ""
     load = "" if facts["load_before"] is None else f" (load {facts['load_before']:.1f} before)"
     cores = f"{facts['cores']} cores{load}"
-    return f"{facts['processor']}, {cores}, {facts['machine']}, Python {facts['python']}{drawn}"
+    path = f"kernel on its {facts['code_path']} path"
+    system = f"{facts['machine']}, Python {facts['python']}"
+    return f"{facts['processor']}, {path}, {cores}, {system}{drawn}"
 
 
 def _processor() -> str:

@@ -11,6 +11,7 @@ from .energy_report import (
     ratios_in,
     ratios_to_kern_c,
     two_thread_ratios,
+    v3_ending,
     weighted_ratios,
 )
 from .machine import machine_words
@@ -103,8 +104,12 @@ def ratio_table(figures: EnergyFigures, with_prototypes: bool) -> str:
     for what, ratios in kinds.items():
         for size, table in figures.table1.items():
             rows += _ratio_rows(f"{what}, {size}", ratios(table))
+    for size, processes in figures.processes.items():
+        rows += _ratio_rows(f"two processes to one, what two threads can reach, {size}", processes)
     for size, parts in figures.prototypes.items() if with_prototypes else ():
         rows += _ratio_rows(f"to prototype kern.c, {size}", ratios_to_kern_c(parts))
+        on_v3 = ratios_to_kern_c(parts, v3_ending(figures.machine))
+        rows += _ratio_rows(f"to prototype kern.c, on the x86-64-v3 path, {size}", on_v3)
     return lined(["", "", "whole", "limb", "hand"], rows)
 
 
@@ -138,7 +143,8 @@ def _about(figures: EnergyFigures) -> str:
     return (
         f"Measured on {machine_words(figures.machine)}. Eight cameras; a body of {full:,} "
         f"triangles, {coarse:,} in its coarse mesh; one thread unless said. All rows of a column "
-        "take turns, no candidate comes twice; medians."
+        "take turns, no candidate comes twice; medians, but for the cost per camera, which is that "
+        "of the best turn."
     )
 
 
@@ -157,7 +163,8 @@ def _cameras(figures: EnergyFigures) -> str:
         ]
         for name, costs in figures.cameras.items()
     ]  # fmt: skip
-    return lined(["", "fixed, µs", "per camera, µs", "largest distance from the line"], rows)
+    told = "Of each row's best turn, not the median: what else runs only ever adds to a cost.\n\n"
+    return told + lined(["", "fixed, µs", "per camera, µs", "largest distance from the line"], rows)
 
 
 def _levels(figures: EnergyFigures) -> str:
@@ -178,7 +185,11 @@ def _levels(figures: EnergyFigures) -> str:
             *_lengths(found["best_pose_shift_mm"]),
         ],
     ]
-    return lined(["coarse against full mesh", "mean", "largest"], rows)
+    keys = (
+        "In the JSON file `lod_mask_xor` and `lod_energy_difference` are the largest, "
+        "`lod_pose_change_mm` is the mean and `lod_pose_change_max_mm` the largest.\n\n"
+    )
+    return keys + lined(["coarse against full mesh", "mean", "largest"], rows)
 
 
 def _lengths(spread: dict[str, float]) -> list[str]:

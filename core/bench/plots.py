@@ -10,13 +10,12 @@ from ..pages.axis import Axis, value_axis
 from ..pages.markup import Html, element
 from .cameras import CameraCosts
 from .energy import EnergyFigures
-from .energy_report import PARTS, PRERENDERED
-from .table1 import PAPER_RATES
+from .table1 import PAPER_RATES, PARTS, PRERENDERED
 from .table2 import PAPER_SECONDS
 
 PLOTS = {
     "speed": "Evaluations per second at 320x240, parts that stand still pre-rendered",
-    "cameras": "Microseconds for one candidate against the number of cameras",
+    "cameras": "Microseconds for one candidate against the number of cameras, best turns",
     "fitting": "Seconds per frame with the paper's settings",
 }
 """Name of the file and what it shows."""

@@ -13,6 +13,7 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
 
@@ -35,6 +36,23 @@ def are_in(folder: Path | None) -> bool:
     return folder is not None and all((folder / name).is_file() for name in FILES)
 
 
+@dataclass(frozen=True, eq=False)
+class Asked:
+    """What is compared.
+
+    Attributes:
+        size: (width, height) px.
+        observed: (8, H, W) uint8 silhouettes.
+        fixed: likewise, of what stands still; None for nothing.
+        segments: that move.
+    """
+
+    size: tuple[int, int]
+    observed: np.ndarray
+    fixed: np.ndarray | None
+    segments: Sequence[int]
+
+
 class Prototypes:
     """The prototypes' modules, imported from ``folder``; what they write goes to ``scratch``.
 
@@ -53,21 +71,18 @@ class Prototypes:
             self.kernel = importlib.import_module("ck")
         self.meshes = {"full": self.scene.build(), "coarse": self.scene.build(True)}
 
-    def energies(self, mesh: str, size: tuple[int, int], observed, fixed, segments, method: int):
+    def energies(self, mesh: str, method: int, asked: "Asked"):
         """``kern.c`` as a function of (n, 35) float32 poses, and what readies its lists.
 
         Args:
             mesh: full or coarse.
-            size: (width, height) px.
-            observed: (8, H, W) uint8.
-            fixed: likewise, of what stands still; None for nothing.
-            segments: that move.
             method: `WINDING`, `PARITY` or `LISTS`.
+            asked: what is compared.
         """
         # all meshes share the lists that the first one asks for: the full mesh must be the first
         with _working_folder(self.scratch):
-            kernel = self.kernel.Ev(self.meshes[mesh], *size, observed, fixed)
-        chosen = np.array(segments, np.int32)
+            kernel = self.kernel.Ev(self.meshes[mesh], *asked.size, asked.observed, asked.fixed)
+        chosen = np.array(asked.segments, np.int32)
         total = np.zeros(1, np.int64)
 
         def ready(pose: np.ndarray) -> None:
@@ -83,16 +98,13 @@ class Prototypes:
         return energies, ready
 
     def paper_energies(
-        self, size: tuple[int, int], observed, fixed, windows, segments, transforms: Callable
+        self, asked: "Asked", windows: np.ndarray | None, transforms: Callable
     ) -> Callable[[np.ndarray], np.ndarray]:
         """``gl_eval.py`` as in the paper: stencil, read-back and windows on the full mesh.
 
         Args:
-            size: (width, height) px.
-            observed: (8, H, W) uint8.
-            fixed: likewise, of what stands still; None for nothing.
+            asked: what is compared.
             windows: (8, 4) corners in px; None for whole pictures.
-            segments: that move.
             transforms: a pose (35,) to (16, 3, 4), in place of their own, which needs numba.
 
         Raises:
@@ -102,15 +114,16 @@ class Prototypes:
         boxes = None
         if windows is not None:
             sides = [(x0, y0, x1 - x0, y1 - y0) for x0, y0, x1, y1 in windows.tolist()]
-            boxes = [_inside(box, size) for box in sides]
+            boxes = [_inside(box, asked.size) for box in sides]
         try:
             with self._imports():
                 gl = importlib.import_module("gl_eval")
             gl.init()
-            paper = gl.Paper(self.meshes["full"], *size, observed, fixed, boxes)
+            compared = asked.observed, asked.fixed, boxes
+            paper = gl.Paper(self.meshes["full"], *asked.size, *compared)
         except Exception as error:
             raise MocapError(f"gl_eval.py fails ({type(error).__name__}: {error})") from error
-        chosen = np.array(segments, np.int32)
+        chosen = np.array(asked.segments, np.int32)
         return lambda poses: np.array([paper.eval(pose, chosen) for pose in poses])
 
     def body(self) -> Body:

@@ -19,6 +19,7 @@ from .stage import Stage
 from .turns import Variant
 
 PAPER_GL, EXACT, LOD = "opengl_paper", "native_exact", "native_lod"
+LEVELS = {"exact": EXACT, "lod": LOD}
 WEIGHTED, TWO_THREADS = "_weighted", "_two_threads"
 
 

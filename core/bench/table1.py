@@ -3,11 +3,11 @@
 The whole body is drawn at full and half resolution, an arm in a window of 128 x 128 px and a hand
 in one of 64 x 64 px. XOR draws the whole body for every candidate; with pre-rendering (XORPR) the
 parts that stand still are drawn once and masked out. In the first two cells everything moves, so
-that both are one and the same.
+that both are one and the same work. Both ways of a cell take turns with each other.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -17,8 +17,9 @@ from ..cameras.camera import Camera
 from ..errors import MocapError
 from ..rendering.native import NativeEvaluator
 from .rows import LevelChoice, Row, full_level, variant
+from .sequences import sequence
 from .stage import PART_SPREAD, WHOLE_SPREAD, Stage, candidates_about, filmed, part_named, studio
-from .turns import Rates, Turns, measured
+from .turns import Rates, Turns, Variant, measured
 
 PAPER_RATES = {
     "full": (95.9, 95.5),
@@ -61,6 +62,7 @@ class Cell:
     scale: float = 1.0
 
 
+_POSE_FRAME, _SEEN_FRAME = 40, 38
 CELLS = (
     Cell("full", "full"),
     Cell("half", "half", scale=0.5),
@@ -68,6 +70,9 @@ CELLS = (
     Cell("hand", "64² (hand)", "left_hand", 64),
 )
 WAYS = ("xor", "prerendered")
+PRERENDERED = WAYS[1]
+PARTS = {"whole": "full", "limb": "limb", "hand": "hand"}
+"""Part of the body to the cell that shows it."""
 Measured = dict[tuple[str, str], Rates]
 """Cell and way to what was measured there."""
 
@@ -92,6 +97,12 @@ class Scene:
         return Stage(full, self.pose, filmed(full, self.seen))
 
 
+def scene_of(body: Body) -> Scene:
+    """The scene that is measured: two frames of sequence A, one seen and one searched from."""
+    motion = sequence(body, "A", _POSE_FRAME + 1)
+    return Scene(body, motion[_POSE_FRAME], motion[_SEEN_FRAME])
+
+
 def table1(
     scene: Scene,
     size: tuple[int, int],
@@ -107,8 +118,9 @@ def table1(
         for cell in CELLS:
             if cell.scale != scale:
                 continue
+            rates = _rates(stage, cell, evaluators, turns)
             for way in WAYS:
-                found[cell.name, way] = _rates(stage, cell, way, evaluators, turns)
+                found[cell.name, way] = rates.of(way)
                 tell.advance()
     return {(cell.name, way): found[cell.name, way] for cell in CELLS for way in WAYS}
 
@@ -128,17 +140,31 @@ def _evaluators(stage: Stage, rows: Sequence[Row], tell: Teller) -> dict[Row, An
     return {row: made[row.make] for row in rows if made[row.make] is not None}
 
 
-def _rates(stage: Stage, cell: Cell, way: str, evaluators: dict[Row, Any], turns: Turns) -> Rates:
+def _rates(stage: Stage, cell: Cell, evaluators: dict[Row, Any], turns: Turns) -> Rates:
+    """Of all rows and both ways, in turns."""
+    variants = [
+        variant_of(row, made, stage, cell, way) for way in WAYS for row, made in evaluators.items()
+    ]
+    return measured(variants, candidates_of(stage, cell, turns.poses), turns)
+
+
+def variant_of(row: Row, evaluator: Any, stage: Stage, cell: Cell, way: str) -> Variant:
+    """How ``row`` computes energies in a cell, in one of `WAYS`, of which they are a group."""
     part = None if cell.part is None else part_named(stage.body, cell.part)
-    moved = range(len(stage.body.dofs)) if part is None else part.dofs
-    spread = WHOLE_SPREAD if part is None else PART_SPREAD
     windows = None
     if part is not None and cell.side is not None:
         windows = stage.windows(part, cell.side)
-    prerendered = part is not None and way == "prerendered"
-    drawn = part.segments if part is not None and prerendered else stage.everything
-    variants = [variant(row, made, stage, drawn, windows) for row, made in evaluators.items()]
-    return measured(variants, candidates_about(stage.pose, moved, spread, turns.poses), turns)
+    alone = part is not None and way == PRERENDERED
+    drawn = part.segments if part is not None and alone else stage.everything
+    return replace(variant(row, evaluator, stage, drawn, windows), group=way)
+
+
+def candidates_of(stage: Stage, cell: Cell, count: int) -> Callable[[int], np.ndarray]:
+    """Poses that differ in what moves in a cell; see `stage.candidates_about`."""
+    part = None if cell.part is None else part_named(stage.body, cell.part)
+    if part is None:
+        return candidates_about(stage.pose, range(len(stage.body.dofs)), WHOLE_SPREAD, count)
+    return candidates_about(stage.pose, part.dofs, PART_SPREAD, count)
 
 
 def triangles(body: Body, size: tuple[int, int], level: LevelChoice = full_level) -> int:

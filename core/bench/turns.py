@@ -23,11 +23,12 @@ class Variant:
     """One way to compute energies.
 
     Attributes:
-        name: unique among those that take turns.
+        name: unique in its group.
         energies: a batch of candidates, as ``converted`` made them, to its (n,) energies in px.
         converted: poses (n, D) in the form that ``energies`` takes; not timed.
         ready: called before each turn; not timed.
-        comparable: whether its energies mean the same as the first variant's.
+        comparable: whether its energies mean the same as those of its group's first variant.
+        group: what it is compared within.
     """
 
     name: str
@@ -35,6 +36,7 @@ class Variant:
     converted: Callable[[np.ndarray], np.ndarray] = np.ascontiguousarray
     ready: Callable[[], object] = tuple
     comparable: bool = True
+    group: str = ""
 
 
 @dataclass(frozen=True)
@@ -62,14 +64,27 @@ class Rates:
         names: N variants.
         per_turn: (turns, N) evaluations per second.
         batches: N candidates in one call.
-        differences: N largest differences in px from the first variant's energies; None for those
-            that are not comparable.
+        differences: N largest differences in px from the energies of the group's first variant;
+            None for those that are not comparable.
+        groups: N groups.
     """
 
     names: tuple[str, ...]
     per_turn: np.ndarray
     batches: tuple[int, ...]
     differences: tuple[int | None, ...]
+    groups: tuple[str, ...] = ()
+
+    def of(self, group: str) -> "Rates":
+        """Those of one group."""
+        kept = [k for k, own in enumerate(self.groups) if own == group]
+        return Rates(
+            names=tuple(self.names[k] for k in kept),
+            per_turn=self.per_turn[:, kept],
+            batches=tuple(self.batches[k] for k in kept),
+            differences=tuple(self.differences[k] for k in kept),
+            groups=tuple(group for _ in kept),
+        )
 
     @property
     def medians(self) -> dict[str, float]:
@@ -100,7 +115,7 @@ def measured(
     """The rates of ``variants``, all taking turns.
 
     Args:
-        variants: with unique names.
+        variants: names are unique within a group.
         candidates: the number of a turn to its poses (n, D), all distinct; turn 0 comes before
             the first, to warm up and to find batches that are long enough.
         turns: how thoroughly.
@@ -110,18 +125,19 @@ def measured(
     for variant in variants:
         poses = variant.converted(trial)
         variant.ready()
-        batches.append(_batch(variant, poses, turns))
+        batches.append(batch_of(variant, poses, turns))
         energies.append(np.asarray(variant.energies(poses[:8])))
     rates = np.zeros((turns.count, len(variants)))
     for turn in range(turns.count):
         poses = candidates(turn + 1)
         for k in order(turn, len(variants)):
-            rates[turn, k] = _rate(variants[k], poses, batches[k], turns.seconds)
+            rates[turn, k] = rate_of(variants[k], poses, batches[k], turns.seconds)
+    groups = tuple(v.group for v in variants)
     differences = tuple(
-        int(np.abs(e - energies[0]).max()) if v.comparable else None
+        int(np.abs(e - energies[groups.index(v.group)]).max()) if v.comparable else None
         for e, v in zip(energies, variants, strict=True)
     )
-    return Rates(tuple(v.name for v in variants), rates, tuple(batches), differences)
+    return Rates(tuple(v.name for v in variants), rates, tuple(batches), differences, groups)
 
 
 def order(turn: int, count: int) -> list[int]:
@@ -129,7 +145,7 @@ def order(turn: int, count: int) -> list[int]:
     return [(turn + k) % count for k in range(count)]
 
 
-def _batch(variant: Variant, poses: np.ndarray, turns: Turns) -> int:
+def batch_of(variant: Variant, poses: np.ndarray, turns: Turns) -> int:
     """Candidates in one call: doubled until calls are long enough."""
     count = 1
     while True:
@@ -142,7 +158,7 @@ def _batch(variant: Variant, poses: np.ndarray, turns: Turns) -> int:
         count *= 2
 
 
-def _rate(variant: Variant, poses: np.ndarray, batch: int, seconds: float) -> float:
+def rate_of(variant: Variant, poses: np.ndarray, batch: int, seconds: float) -> float:
     """Evaluations per second of one turn."""
     poses = variant.converted(poses)
     variant.ready()

@@ -11,15 +11,17 @@ from silhouette_mocap.core.bench import energy
 from silhouette_mocap.core.bench.cameras import CameraCosts
 from silhouette_mocap.core.bench.energy import EnergySettings, energy_figures
 from silhouette_mocap.core.bench.energy_files import write_energy_files
-from silhouette_mocap.core.bench.energy_report import as_dict
-from silhouette_mocap.core.bench.markdown import lined
+from silhouette_mocap.core.bench.energy_report import as_dict, ratios_to_kern_c, v3_ending
+from silhouette_mocap.core.bench.markdown import lined, readme_section, whole_report
 from silhouette_mocap.core.bench.plots import Bars, bars_picture
+from silhouette_mocap.core.bench.processes import two_process_ratios
 from silhouette_mocap.core.bench.rows import Row, coarse_level, native_rows
 from silhouette_mocap.core.bench.table1 import Scene, Teller, table1, triangles
-from silhouette_mocap.core.bench.turns import Turns
+from silhouette_mocap.core.bench.turns import Rates, Turns, measured
 from silhouette_mocap.core.body.templates import template
 from silhouette_mocap.core.cli import main
 from silhouette_mocap.core.errors import MocapError
+from silhouette_mocap.core.native.library import load
 from silhouette_mocap.core.optimisers.evolution import Evolution
 from silhouette_mocap.core.progress import Silence
 from silhouette_mocap.core.rendering.native import NativeEvaluator
@@ -29,6 +31,7 @@ from synthetic import small_body
 TINY = EnergySettings(
     Turns(1, 0.001, 64, 16), ((64, 48),), (2, 3), frames=1, fits=1, fit=Evolution(8, 3)
 )
+TWO_PROCESSES = {level: {"whole": 1.9, "limb": 1.8, "hand": 1.7} for level in ("exact", "lod")}
 RATIO_KEYS = {"exact": {"whole", "limb", "hand"}, "lod": {"whole", "limb", "hand"}}
 
 
@@ -71,6 +74,7 @@ def figures(progress):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(energy, "opengl_rows", paper_row)
         patch.setattr(energy, "template", light_body)
+        patch.setattr(energy, "two_process_ratios", lambda size, turns: TWO_PROCESSES)
         return energy_figures(TINY, progress)
 
 
@@ -88,7 +92,8 @@ def test_progress_counts_every_step_and_tells_what_is_left_out(figures, progress
 
 
 def test_ratios_hold_every_part_of_both_levels(report):
-    for key in ("ratio_to_paper_gl", "ratio_to_kern_c", "ratio_to_gl_eval", "two_threads"):
+    to_prototypes = ("ratio_to_kern_c", "ratio_to_kern_c_v3", "ratio_to_gl_eval")
+    for key in ("ratio_to_paper_gl", *to_prototypes, "two_threads", "two_processes"):
         assert {level: set(parts) for level, parts in report[key].items()} == RATIO_KEYS, key
     assert report["ratio_to_paper_gl"]["lod"]["whole"] > 0.1
     assert set(report["ratio_to_paper_gl_by_size"]) == {"64x48"}
@@ -139,8 +144,50 @@ def test_table_2_has_both_sequences_and_the_same_poses_with_and_without_prerende
         assert ways["xor"]["error_mm"] == ways["prerendered"]["error_mm"]
 
 
-def test_the_machine_is_named(report):
+def test_the_machine_is_named_with_the_kernels_code_path(report, figures):
+    path = {1: "base", 3: "x86-64-v3", 4: "x86-64-v4"}[load().sm_processor()]
+    assert report["machine"]["code_path"] == path
+    assert f"kernel on its {path} path" in readme_section(figures, "plots")
     assert {"processor", "cores", "load_before", "python", "opengl"} <= set(report["machine"])
+
+
+def test_the_report_says_what_is_no_median_and_names_the_ceiling_of_two_threads(figures):
+    text = whole_report(figures)
+    assert "medians, but for the cost per camera" in text and "Of each row's best turn" in text
+    assert "`lod_pose_change_mm` is the mean and `lod_pose_change_max_mm` the largest" in text
+    rows = [line for line in text.splitlines() if "two processes to one" in line]
+    assert len(rows) == 2 and all("| 1.90x | 1.80x | 1.70x |" in row for row in rows)
+
+
+def test_two_processes_are_measured_for_every_part():
+    found = two_process_ratios((64, 48), TINY.turns)
+    assert {level: set(parts) for level, parts in found.items()} == RATIO_KEYS
+    assert all(0.2 < value < 20 for parts in found.values() for value in parts.values())
+
+
+def test_both_ways_of_a_cell_take_turns(monkeypatch):
+    groups = []
+
+    def spied(variants, candidates, turns):
+        groups.append([variant.group for variant in variants])
+        return measured(variants, candidates, turns)
+
+    monkeypatch.setattr("silhouette_mocap.core.bench.table1.measured", spied)
+    body = small_body("sixteen_segment")
+    scene, tell = Scene(body, body.rest_pose, body.rest_pose), Teller(print, lambda: None)
+    table = table1(scene, (48, 36), [native_rows()[3]], replace(TINY.turns, poses=16), tell)
+    assert groups == [["xor", "prerendered"]] * 4 and len(table) == 8
+
+
+def test_ratios_on_the_v3_path_are_those_of_its_rows():
+    rows = {"native_exact": 8.0, "native_exact_v3": 6.0, "native_lod": 40.0, "native_lod_v3": 20.0}
+    rows |= {"prototype_kern_c_full_winding": 2.0, "prototype_kern_c_coarse_lists": 10.0}
+    rates = Rates(tuple(rows), np.array([list(rows.values())]), (1,) * 6, (0,) * 6)
+    for path, exact, coarse in (("x86-64-v4", 3.0, 2.0), ("x86-64-v3", 4.0, 4.0)):
+        ratios = ratios_to_kern_c({"hand": rates}, v3_ending({"code_path": path}))
+        assert ratios == {"exact": {"hand": exact}, "lod": {"hand": coarse}}
+    nothing = ratios_to_kern_c({"hand": rates}, v3_ending({"code_path": "base"}))
+    assert nothing["lod"]["hand"] is None
 
 
 def test_files_are_whole_tables_and_pictures(figures, tmp_path):
@@ -193,6 +240,26 @@ def test_the_command_writes_what_it_measured(monkeypatch, tmp_path, capsys, figu
     assert main(words) == 0
     assert "Table 1 at 64x48" in capsys.readouterr().out
     assert "ratio_to_paper_gl" in json.loads((tmp_path / "new" / "e.json").read_text("utf-8"))
+
+
+@pytest.mark.parametrize("option", ["--json", "--out"])
+def test_what_cannot_be_written_is_refused_before_the_work(option, monkeypatch, tmp_path, capsys):
+    def never(settings, progress):
+        raise AssertionError("worked")
+
+    monkeypatch.setattr("silhouette_mocap.core.cli.bench.energy_figures", never)
+    (tmp_path / "file").write_text("mine")
+    places = [tmp_path / "file" / "new"]
+    places.append(tmp_path if option == "--json" else tmp_path / "file")
+    for place in places:
+        assert main(["bench", "energy", option, str(place)]) == 2
+        error = capsys.readouterr().err
+        assert error.count("\n") == 1 and str(tmp_path) in error
+    with monkeypatch.context() as patch:
+        patch.setattr("silhouette_mocap.core.files.os.access", lambda path, mode: False)
+        place = tmp_path / "new.json" if option == "--json" else tmp_path
+        assert main(["bench", "energy", option, str(place)]) == 2
+    assert "cannot be written (Permission denied)" in capsys.readouterr().err
 
 
 def test_settings_count_the_comparisons_with_prototypes(tmp_path):

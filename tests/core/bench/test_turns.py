@@ -102,3 +102,22 @@ def test_differences_from_the_first_variant_are_told():
 def test_candidates_are_the_same_for_the_same_turn(dofs):
     both = [candidates_about(np.zeros(6), dofs, 0.1, 16)(3) for _ in range(2)]
     assert np.array_equal(*both)
+
+
+def test_groups_take_turns_together_and_are_compared_each_with_its_own_first():
+    ran = []
+
+    def running(name, group, more):
+        def energies(poses):
+            ran.append(name)
+            return sums(poses) + more
+
+        return Variant(name, energies, group=group)
+
+    variants = [running("a", "x", 0), running("b", "x", 2), running("a", "y", 50)]
+    variants.append(Variant("b", lambda poses: sums(poses) + 57, group="y"))
+    rates = measured(variants, candidates_about(np.zeros(4), [1], 1.0, 64), TURNS)
+    one, other = rates.of("x"), rates.of("y")
+    assert one.names == other.names == ("a", "b")
+    assert one.differences == (0, 2) and other.differences == (0, 7)
+    np.testing.assert_array_equal(np.hstack([one.per_turn, other.per_turn]), rates.per_turn)
