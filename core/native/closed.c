@@ -4,8 +4,8 @@
  * a row has crossings. A face without snapped area may pass for either, as its crossings cancel.
  *
  * The pixels right of a crossing c start at x = ceil(c) = floor(c + 1 - 1 / (512 dy)), as c is a
- * multiple of 1 / (256 dy) px. In steps of 2^-46 px the sum over up to 8,192 rows is off by less than
- * 2^-33 px, so its integer part is exact for dy up to 2^23 (twice the guard region).
+ * multiple of 1 / (256 dy) px. In steps of 2^-46 px, rounded or cut off, the sum over up to 8,192 rows
+ * is off by less than 2^-32 px, so its integer part is exact for dy up to 2^23 (twice the guard region).
  */
 #include "path.h"
 

@@ -138,7 +138,7 @@ static void clear(const extent *all, int32_t words, sm_edges *e) {
             memset(e->planes[p] + e->rows * (size_t)w + all->top, 0, 8 * (size_t)(all->bottom - all->top));
 }
 
-/* Draws what lies inside the crossings; returns 0, with nothing drawn, where a row has too many. */
+/* Draws what lies inside the crossings; returns 0 where a row has too many. */
 static int cover(const extent *all, sm_picture *picture, sm_edges *e) {
     int32_t left = all->left, words = (all->right - left + 63) / 64;
     for (int32_t w = 0; w < words; w++) step(all->n, w, left + 64 * w, 2, w == 0, e);

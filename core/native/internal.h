@@ -10,6 +10,7 @@ enum { HIDDEN, PLAIN, CLIPPED };
 /* Which way a face looks; two are known to look the same way where the bitwise and is not 0. */
 enum { UNKNOWN = 0, FRONT = 1, BACK = 2, FLAT = 3, NO_FACE = 4 };
 
+#define SM_MOST_EDGES (1 << 24) /* of a segment's edges, numbers of 24 bits are kept */
 #define SM_SLOTS 16 /* crossings kept per row and segment; more take the per-triangle path */
 
 /* The picture of one view: of every column of words, only the rows of its range are valid, all
@@ -34,7 +35,8 @@ typedef struct {
 
 /* Edges of a closed segment between a front and a back. */
 typedef struct {
-    uint32_t *sure;              /* as edge_ends, with the sign where the first face shows its back */
+    uint32_t *sure;              /* as edge_ends, with the sign where the first face shows its back; then, of eight
+                                    rows, 256 times an edge and a mask of the rows it crosses */
     int32_t *open;               /* edges where a face on either side is not known */
     float *margins;              /* m, of the clusters */
     int32_t *row, *end;          /* rows that are crossed */

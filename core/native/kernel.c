@@ -78,8 +78,9 @@ static uint64_t *blank(void *base, size_t *at, int64_t count) {
     return words;
 }
 
-static void cut_edges(void *base, size_t *at, int64_t clusters, int64_t height, int64_t words, sm_edges *e) {
-    int64_t most = SM_CLUSTER * (clusters + 2), rows = (height + 15) & ~7;
+/* Planes and counts are those of closed_plain.h. */
+static void cut_edges(void *base, size_t *at, int64_t clusters, int64_t height, int64_t words, int plain, sm_edges *e) {
+    int64_t most = SM_CLUSTER * (clusters + 2), rows = plain ? (height + 15) & ~7 : 0;
     e->rows = (size_t)rows;
     e->open = part(base, at, most, sizeof(int32_t));
     e->margins = part(base, at, clusters + 16, sizeof(float));
@@ -130,7 +131,7 @@ size_t sm_cut(const sm_body *body, const sm_views *views, void *base, sm_work *w
     work->points = part(base, &at, vertices + 8, sizeof(int64_t));
     work->counts = part(base, &at, height, 1);
     work->slots = part(base, &at, height * SM_SLOTS, sizeof(int32_t));
-    cut_edges(base, &at, edge_clusters, height, most_words, &work->edges);
+    cut_edges(base, &at, edge_clusters, height, most_words, views->processor != 4, &work->edges);
     cut_skin(base, &at, vertices, clusters, work);
     cut_sight(base, &at, (int64_t)sm_lanes(views), &work->sight);
     work->pictures = part(base, &at, views->views, sizeof(sm_picture));
@@ -177,7 +178,7 @@ static int32_t check_body(const sm_body *body) {
         body->clusters > INT32_MAX / (6 * SM_CLUSTER))
         return SM_SIZE;
     if (largest(body->edge_starts, n) < 0 || body->edge_starts[0] || body->edge_starts[n] != body->edge_clusters ||
-        body->edge_clusters > INT32_MAX / (4 * SM_CLUSTER))
+        body->edge_clusters > SM_MOST_EDGES / SM_CLUSTER)
         return SM_SIZE;
     for (int32_t j = 0; j < body->joints; j++) {
         if (body->parents[j] < -1 || body->parents[j] >= j) return SM_INDEX;

@@ -28,8 +28,8 @@ typedef struct {
  * metres to homogeneous px. Returns 0, with nothing drawn, where a row has too many crossings. */
 int32_t sm_draw_contours(const sm_body *, int32_t segment, const eye *, const double *a, sm_picture *, sm_work *);
 
-/* The same for a closed segment, faster. Returns 0 where it is not closed, overlaps itself too often,
- * or the picture is too high. */
+/* The same for a closed segment, faster. Returns 0, with nothing or a part of it drawn, where it is not
+ * closed, overlaps itself too often, or the picture is too high. */
 int32_t sm_draw_closed(const sm_body *, int32_t segment, const eye *, const double *a, sm_picture *, sm_work *);
 
 /* The clusters from `start` on, of n, whose faces are not all known to look the same way, go into
