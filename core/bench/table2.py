@@ -15,7 +15,8 @@ import numpy as np
 from ..body.body import Body
 from ..body.kinematics import points
 from ..cameras.camera import Camera
-from ..fitting.hierarchical import SETTINGS, HierarchicalSettings, HierarchicalTracker, PoseFit
+from ..fitting.hierarchical import SETTINGS, HierarchicalSettings, HierarchicalTracker
+from ..fitting.tracker import PoseFit
 from ..rendering.native import NativeEvaluator
 from .rows import coarse_level, full_level
 from .sequences import sequence

@@ -4,6 +4,7 @@ The plain statement of the convention in `body.py`, made of SciPy rotations: slo
 oracle of the native transforms.
 """
 
+from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
 
@@ -137,15 +138,20 @@ def within_limits(body: Body, poses: np.ndarray) -> np.ndarray:
     poses = _checked(body, poses)
     low, high = body.dofs.limits.T
     inside = ((poses >= low - TOLERANCE) & (poses <= high + TOLERANCE)).all(axis=1)
-    for joint, cone in body.cones.items():
-        swings = poses[:, swing_rows(body, joint)]
-        inside &= (_edge_distances(cone, swings) >= -TOLERANCE).all(axis=1)
+    for cone in _cones(body):
+        inside &= (cone.depths(poses) >= -TOLERANCE).all(axis=1)
     return inside
 
 
-def _edge_distances(cone: np.ndarray, swings: np.ndarray) -> np.ndarray:
-    """(N, K) signed distances of swings (N, 2) to the lines of a cone's edges, inside positive."""
-    return np.einsum("nkc,kc->nk", swings[:, None] - cone, inward_normals(cone))
+def clamped(body: Body, poses: np.ndarray) -> np.ndarray:
+    """Poses (N, D) brought within the limits: each value and each swing to the nearest allowed."""
+    poses = np.clip(_checked(body, poses), *body.dofs.limits.T)
+    for cone in _cones(body):
+        outside = (cone.depths(poses) < 0).any(axis=1)
+        if outside.any():
+            swings = poses[outside][:, cone.rows]
+            poses[np.ix_(outside, cone.rows)] = cone.nearest_on_outline(swings)
+    return poses
 
 
 def inward_normals(cone: np.ndarray) -> np.ndarray:
@@ -154,25 +160,37 @@ def inward_normals(cone: np.ndarray) -> np.ndarray:
     return np.stack([-edges[:, 1], edges[:, 0]], -1) / np.linalg.norm(edges, axis=1)[:, None]
 
 
-def clamped(body: Body, poses: np.ndarray) -> np.ndarray:
-    """Poses (N, D) brought within the limits: each value and each swing to the nearest allowed."""
-    poses = np.clip(_checked(body, poses), *body.dofs.limits.T)
-    for joint, cone in body.cones.items():
-        rows = swing_rows(body, joint)
-        swings = poses[:, rows]
-        outside = (_edge_distances(cone, swings) < 0).any(axis=1)
-        poses[np.ix_(outside, rows)] = _nearest_on_outline(cone, swings[outside])
-    return poses
+@dataclass(frozen=True, eq=False)
+class _Cone:
+    """A swing's rows, its polygon's corners (K, 2) and edges (K, 2), and what lies inside."""
+
+    rows: list[int]
+    corners: np.ndarray
+    edges: np.ndarray
+    normals: np.ndarray
+    offsets: np.ndarray
+
+    def depths(self, poses: np.ndarray) -> np.ndarray:
+        """(N, K) signed distances of the swings to the lines of the edges, inside positive."""
+        return poses[:, self.rows] @ self.normals.T - self.offsets
+
+    def nearest_on_outline(self, swings: np.ndarray) -> np.ndarray:
+        """(N, 2) points of the polygon's outline nearest to swings (N, 2)."""
+        offsets = swings[:, None] - self.corners
+        along = np.clip((offsets * self.edges).sum(-1) / (self.edges**2).sum(-1), 0, 1)
+        candidates = self.corners + along[..., None] * self.edges
+        nearest = np.linalg.norm(swings[:, None] - candidates, axis=-1).argmin(axis=1)
+        return candidates[np.arange(len(swings)), nearest]
 
 
-def _nearest_on_outline(cone: np.ndarray, swings: np.ndarray) -> np.ndarray:
-    """(N, 2) points of the polygon's outline nearest to swings (N, 2)."""
-    edges = np.roll(cone, -1, axis=0) - cone
-    offsets = swings[:, None] - cone
-    along = np.clip((offsets * edges).sum(-1) / (edges**2).sum(-1), 0, 1)
-    candidates = cone + along[..., None] * edges
-    nearest = np.linalg.norm(swings[:, None] - candidates, axis=-1).argmin(axis=1)
-    return candidates[np.arange(len(swings)), nearest]
+@lru_cache(maxsize=16)
+def _cones(body: Body) -> tuple[_Cone, ...]:
+    cones = []
+    for joint, corners in body.cones.items():
+        normals = inward_normals(corners)
+        edges, offsets = np.roll(corners, -1, axis=0) - corners, (normals * corners).sum(axis=1)
+        cones.append(_Cone(list(swing_rows(body, joint)), corners, edges, normals, offsets))
+    return tuple(cones)
 
 
 def _checked(body: Body, poses: np.ndarray) -> np.ndarray:

@@ -17,7 +17,7 @@ its hand or foot, all from the pose that the torso's search left; the head's sea
 meanwhile. That schedule gives the same result whether one thread or many work through it.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from concurrent.futures import Executor
 from copy import copy
 from dataclasses import dataclass, field, replace
@@ -28,16 +28,15 @@ from ..body.body import Body, Part
 from ..body.kinematics import clamped
 from ..body.limits import Limits
 from ..cameras.camera import Camera
-from ..energy.evaluator import Evaluator, Weights
+from ..energy.evaluator import Weights
 from ..energy.weight_maps import halved, halved_camera, xor_weight_maps
 from ..optimisers.downhill import Effort, downhill
 from ..optimisers.grid import grid_points, lowest
 from ..silhouettes.silhouette import Silhouette
-from .part_search import FORBIDDEN, PartEnergy, Tally, first_steps, part_windows, rest_prior
+from .part_search import FORBIDDEN, PartEnergy, first_steps, part_windows, rest_prior
 from .shares import shares_of
 from .torso_volume import TorsoVolume
-
-EvaluatorFactory = Callable[[Body, tuple[Camera, ...]], Evaluator]
+from .tracker import EvaluatorFactory, PoseFit, Tally
 
 _WINDOW_SIDES = {"limb": 128, "end": 64}
 _LEAST_AREA = 0.2
@@ -85,21 +84,6 @@ FAITHFUL = HierarchicalSettings(
 FAITHFUL_FAST = replace(FAITHFUL, grid_steps=4, grid_half_width=np.radians(35))
 SETTINGS = {"robust": (ROBUST, ROBUST_FAST), "faithful": (FAITHFUL, FAITHFUL_FAST)}
 """Name -> settings for ordinary and for fast motion; the faithful ones suit the paper's Table 2."""
-
-
-@dataclass(frozen=True, eq=False)
-class PoseFit:
-    """The pose found for one frame.
-
-    Attributes:
-        pose: (D,).
-        energy: px that differ, summed over views.
-        tally: what the search took.
-    """
-
-    pose: np.ndarray
-    energy: int
-    tally: Tally
 
 
 class HierarchicalTracker:

@@ -10,27 +10,10 @@ from ..body.limits import Limits
 from ..cameras.camera import Camera
 from ..energy.evaluator import Evaluator, Weights
 from .torso_volume import TorsoVolume
+from .tracker import Tally
 
 FORBIDDEN = 1e9
 """Energy of a candidate beyond the limits or inside the torso; it is never rendered."""
-
-
-@dataclass
-class Tally:
-    """What searching a frame took.
-
-    Attributes:
-        evaluated: candidates rendered and compared.
-        outside_windows: candidates among them that reached out of their part's window.
-    """
-
-    evaluated: int = 0
-    outside_windows: int = 0
-
-    def add(self, other: "Tally") -> None:
-        """Counts what ``other`` has counted, too."""
-        self.evaluated += other.evaluated
-        self.outside_windows += other.outside_windows
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,11 +2,11 @@
 
 from dataclasses import dataclass
 
-import cv2
 import numpy as np
 
 from ..body.body import POINT_NAMES, Body
 from ..energy.evaluator import Evaluator
+from ..silhouettes.observed_contour import signed_distances
 from ..silhouettes.silhouette import Silhouette
 from .part_search import metres_per_pixel
 
@@ -98,17 +98,6 @@ def _differences(silhouette: Silhouette, model: np.ndarray) -> tuple[int, int]:
     """Px of the symmetric difference and of the union, where something was observed."""
     seen, drawn = silhouette.foreground & silhouette.observed, model & silhouette.observed
     return np.count_nonzero(seen ^ drawn), np.count_nonzero(seen | drawn)
-
-
-def signed_distances(mask: np.ndarray) -> np.ndarray:
-    """(H, W) px from each pixel's centre to the mask's boundary, negative inside.
-
-    The boundary runs between pixels, so no centre is nearer than half a pixel.
-    """
-    inside = mask.astype(np.uint8)
-    depth = cv2.distanceTransform(inside, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
-    height = cv2.distanceTransform(1 - inside, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
-    return np.where(mask, 0.5 - depth, height - 0.5)
 
 
 def contour_distances(

@@ -8,9 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..silhouettes.silhouette import Silhouette
-from .hierarchical import HierarchicalTracker
-from .part_search import Tally
 from .scores import FrameScores, frame_scores
+from .tracker import Tally, Tracker
 
 _log = logging.getLogger(__name__)
 _DAMPING = 0.7
@@ -37,7 +36,7 @@ class FrameFit:
 
 
 def track(
-    tracker: HierarchicalTracker,
+    tracker: Tracker,
     last: np.ndarray,
     frames: Iterable[tuple[int, tuple[Silhouette, ...]]],
     before: np.ndarray | None = None,

@@ -15,8 +15,9 @@ from ..body.body import Body, DofKind
 from ..body.kinematics import rest_height
 from ..body.scaling import scaled
 from ..cameras.camera import Camera
-from ..fitting.hierarchical import FAITHFUL, EvaluatorFactory, HierarchicalTracker, PoseFit
+from ..fitting.hierarchical import FAITHFUL, HierarchicalTracker
 from ..fitting.scores import frame_scores
+from ..fitting.tracker import EvaluatorFactory, PoseFit
 from ..silhouettes.silhouette import Silhouette
 from .pose_kinds import pose_of_kind
 from .standing import body_centre, row_span, standing_height

@@ -73,7 +73,8 @@ def _objects(target: str) -> list[tuple[str, str, tuple[str, ...]]]:
     """(object, source, flags) of everything that is linked."""
     paths = PATHS if "x86_64" in target else {"base": ()}
     whole: list[tuple[str, str, tuple[str, ...]]] = [
-        (f"{name}.o", f"{name}.c", ()) for name in ("kernel", "processor", "transforms", "weights")
+        (f"{name}.o", f"{name}.c", ())
+        for name in ("kernel", "processor", "transforms", "weights", "contour_terms")
     ]
     return whole + [
         (f"{name}_{path}.o", f"{name}.c", (f"-DSM_PATH={path}", *flags))

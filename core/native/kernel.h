@@ -23,7 +23,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define SM_ABI 6
+#define SM_ABI 7
 #define SM_CLUSTER 16 /* faces to a cluster */
 #define SM_RUN 8      /* the records of a cluster are filled up to a multiple */
 #define SM_LANES 8     /* views side by side */
@@ -37,6 +37,8 @@
 
 enum { SM_OK = 0, SM_SIZE = 1, SM_INDEX = 2, SM_SCRATCH = 3, SM_PROCESSOR = 4 };
 enum { SM_TRANSLATION = 0, SM_HINGE = 1, SM_SWING = 2 };
+#define SM_TERMS 29    /* numbers of one set of normal equations */
+
 enum { SM_PLANES = 0, SM_MAPS = 1 };
 
 /* A body at one level of detail: J joints, D degrees of freedom, S segments. Triangles lie in
@@ -110,6 +112,21 @@ typedef struct {
     int32_t *rows;      /* (V, 2) first and last row + 1 that hold a weight; set by the kernel */
 } sm_weights;
 
+/* What outlines are drawn towards: V observed contours. */
+typedef struct {
+    int32_t views;
+    const int32_t *sizes;       /* (V, 2) width and height */
+    const int64_t *map_starts;  /* (V + 1) first pixel of each view, row by row */
+    const float *fields;        /* (pixels) px from the pixel's centre to the contour, negative inside; not a
+                                   number where nothing was observed */
+    const int64_t *starts;      /* (V + 1) first point of each view's contour */
+    const float *px, *normals;  /* (points, 2) on the contour, and away from the performer */
+    const double *projections;  /* (V, 12) */
+    const double *metres;       /* (V) m that a px is wide where the performer stands */
+    double reach;               /* m: residuals beyond count for less and less */
+    double turn;                /* m that a normal turned by a radian is away */
+} sm_targets;
+
 /* Room for points on outlines. */
 typedef struct {
     int64_t room;      /* for so many */
@@ -132,6 +149,10 @@ SM_API size_t sm_scratch(const sm_body *, const sm_views *);
 
 /* World from joint of n poses (n, D): out (n, J, 3, 4). */
 SM_API int32_t sm_transforms(const sm_body *, const double *poses, int64_t n, double *out);
+
+/* The same of one pose (D), and the twist that each of its DOFs adds when it grows: out (D, 6), the
+ * velocity of what would be at the world's origin, and the angular velocity. */
+SM_API int32_t sm_twists(const sm_body *, const double *pose, double *transforms, double *out);
 
 /* Fills planes, or maps and prefix sums, and rows from `maps` (pixels of all views, one after the
  * other, row by row). `column` is scratch as high as the highest view. */
@@ -160,6 +181,14 @@ SM_API int32_t sm_silhouettes(const sm_body *, const sm_views *, const double *p
 SM_API int32_t sm_outline(const sm_body *, const sm_views *, const double *pose, int32_t per_view,
                           const int32_t *segments, int32_t count, double spacing, sm_points *out, void *scratch,
                           size_t bytes);
+
+/* Normal equations of the points' distances to the observed contours and of the contours' to the nearest
+ * points, by view and joint: out (V, J, SM_TERMS) holds the upper triangle of sum w l l', then sum w r l, the
+ * sum of the robust squares and the number of distances r; r in m, and l its change with the twist of
+ * the joint. `transforms` (J, 3, 4) are those of the outline, `segment_joints` carry its segments; `scratch`
+ * (4, points). */
+SM_API int32_t sm_contour_terms(const sm_targets *, const sm_points *, const double *transforms, int32_t joints,
+                                const int32_t *segment_joints, double *out, float *scratch);
 
 /* Boxes (n, V, 4), x0, y0, x1, y1 (exclusive) px, unclipped by the picture, round all that the
  * segments can cover; the whole guard region where a segment leaves it or comes too near. */

@@ -12,7 +12,7 @@ from pathlib import Path
 from ..errors import MocapError
 from .build import TARGETS, fingerprint, host_target, library_name
 
-ABI = 6
+ABI = 7
 PLANES, MAPS = 0, 1
 FOLDER = Path(__file__).resolve().parent
 BUILD = f'build it: python -m pip install ziglang, then python "{FOLDER / "build.py"}"'
@@ -71,11 +71,23 @@ class PointsRecord(ctypes.Structure):
     )
 
 
+class TargetsRecord(ctypes.Structure):
+    """``sm_targets`` of kernel.h."""
+
+    _fields_ = (
+        ("views", c_int32),
+        *((name, c_void_p) for name in ("sizes", "map_starts", "fields", "starts", "px")),
+        *((name, c_void_p) for name in ("normals", "projections", "metres")),
+        *((name, c_double) for name in ("reach", "turn")),
+    )
+
+
 def _declare(library: ctypes.CDLL) -> None:
     body, views, weights = POINTER(BodyRecord), POINTER(ViewsRecord), POINTER(WeightsRecord)
-    points = POINTER(PointsRecord)
+    points, targets = POINTER(PointsRecord), POINTER(TargetsRecord)
     pointer, scratch = c_void_p, (c_void_p, c_size_t)
     poses, segments = (c_void_p, c_int64, c_int32), (c_void_p, c_int32)
+    terms = (points, pointer, c_int32, pointer, pointer, pointer)
     outline = (pointer, c_int32, *segments, c_double, points)
     signatures = {
         "sm_abi": (c_int32, ()),
@@ -84,6 +96,8 @@ def _declare(library: ctypes.CDLL) -> None:
         "sm_check": (c_int32, (body, views)),
         "sm_scratch": (c_size_t, (body, views)),
         "sm_transforms": (c_int32, (body, pointer, c_int64, pointer)),
+        "sm_twists": (c_int32, (body, pointer, pointer, pointer)),
+        "sm_contour_terms": (c_int32, (targets, *terms)),
         "sm_prepare": (c_int32, (views, pointer, weights, pointer)),
         "sm_mask": (c_int32, (views, weights, pointer, pointer, weights, pointer)),
         "sm_energies": (c_int32, (body, views, weights, *poses, *segments, pointer, *scratch)),

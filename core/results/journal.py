@@ -21,8 +21,8 @@ from ..body.body import POINT_NAMES, Body
 from ..body.file import read_body, write_body
 from ..errors import MocapError
 from ..files import made_folder, unwritable
-from ..fitting.part_search import Tally
 from ..fitting.scores import LIMB_NAMES, FrameScores
+from ..fitting.tracker import Tally
 from ..fitting.tracking import FrameFit
 from ..footage.pictures import write_picture
 from ..geometry.archive import read_archive, write_archive

@@ -7,13 +7,13 @@ from silhouette_mocap.core.energy.weight_maps import xor_weight_maps
 from silhouette_mocap.core.fitting.part_search import (
     FORBIDDEN,
     PartEnergy,
-    Tally,
     first_steps,
     leave_windows,
     metres_per_pixel,
     part_windows,
 )
 from silhouette_mocap.core.fitting.torso_volume import TorsoVolume
+from silhouette_mocap.core.fitting.tracker import Tally
 from synthetic import dof_values, evaluator, filmed, small_body, small_studio
 
 

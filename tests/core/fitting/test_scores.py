@@ -6,8 +6,8 @@ from silhouette_mocap.core.fitting.scores import (
     contour_distances,
     frame_scores,
     limb_segments,
-    signed_distances,
 )
+from silhouette_mocap.core.silhouettes.observed_contour import signed_distances
 from synthetic import dof_values, evaluator, filmed, small_body, small_studio
 
 

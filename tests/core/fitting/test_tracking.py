@@ -1,8 +1,8 @@
 from types import SimpleNamespace
 
 import numpy as np
-from silhouette_mocap.core.fitting.hierarchical import FAITHFUL, HierarchicalTracker, PoseFit
-from silhouette_mocap.core.fitting.part_search import Tally
+from silhouette_mocap.core.fitting.hierarchical import FAITHFUL, HierarchicalTracker
+from silhouette_mocap.core.fitting.tracker import PoseFit, Tally
 from silhouette_mocap.core.fitting.tracking import track
 from synthetic import dof_values, evaluator, filmed, point_errors, small_body, small_studio
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from silhouette_mocap.core.body.kinematics import points
 from silhouette_mocap.core.errors import MocapError
-from silhouette_mocap.core.fitting.part_search import Tally
 from silhouette_mocap.core.fitting.scores import FrameScores
+from silhouette_mocap.core.fitting.tracker import Tally
 from silhouette_mocap.core.fitting.tracking import FrameFit
 from silhouette_mocap.core.results.journal import SET_ASIDE, UNFINISHED, Journal, Start, set_aside
 from synthetic import small_body

@@ -1,0 +1,62 @@
+"""What every tracker offers: a frame's pose, searched from the poses before it."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from ..body.body import Body
+from ..cameras.camera import Camera
+from ..energy.evaluator import Evaluator
+from ..silhouettes.silhouette import Silhouette
+
+EvaluatorFactory = Callable[[Body, tuple[Camera, ...]], Evaluator]
+
+
+@dataclass
+class Tally:
+    """What searching a frame took.
+
+    Attributes:
+        evaluated: candidates rendered and compared.
+        outside_windows: candidates among them that reached out of their part's window.
+    """
+
+    evaluated: int = 0
+    outside_windows: int = 0
+
+    def add(self, other: "Tally") -> None:
+        """Counts what ``other`` has counted, too."""
+        self.evaluated += other.evaluated
+        self.outside_windows += other.outside_windows
+
+
+@dataclass(frozen=True, eq=False)
+class PoseFit:
+    """The pose found for one frame.
+
+    Attributes:
+        pose: (D,).
+        energy: px that differ, summed over views.
+        tally: what the search took.
+    """
+
+    pose: np.ndarray
+    energy: int
+    tally: Tally
+
+
+class Tracker(Protocol):
+    """Fits one frame after another; keeps no state between frames."""
+
+    @property
+    def evaluator(self) -> Evaluator:
+        """Renders the body."""
+        ...
+
+    def fit(
+        self, silhouettes: tuple[Silhouette, ...], last: np.ndarray, predicted: np.ndarray
+    ) -> PoseFit:
+        """The pose that explains the V silhouettes best, searched from two poses (D,)."""
+        ...

@@ -1,0 +1,84 @@
+"""The contour of an observed silhouette: how far every pixel is from it, and points along it."""
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+from .silhouette import Silhouette
+
+BLUR_PX = 0.7
+"""Standard deviation that takes the pixels' steps out of the distances."""
+
+
+@dataclass(frozen=True, eq=False)
+class ObservedContour:
+    """Where one view's silhouette ends; no points where it shows nobody, or nothing else.
+
+    Attributes:
+        field: (H, W) float32 px from the pixel's centre to the contour, negative inside; NaN where
+            nothing was observed.
+        px: (n, 2) float32 points on the contour.
+        normals: (n, 2) float32 unit vectors away from the performer.
+    """
+
+    field: np.ndarray
+    px: np.ndarray
+    normals: np.ndarray
+
+    @classmethod
+    def of(cls, silhouette: Silhouette, spacing_px: float) -> "ObservedContour":
+        """The contour with points about ``spacing_px`` apart."""
+        nowhere = np.zeros((0, 2), np.float32)
+        foreground, observed = silhouette.foreground, silhouette.observed
+        if not foreground.any() or foreground.all():
+            return cls(np.full(foreground.shape, np.nan, np.float32), nowhere, nowhere)
+        field = cv2.GaussianBlur(signed_distances(foreground).astype(np.float32), (0, 0), BLUR_PX)
+        px, normals = _on_zero(field, _crossings(foreground, observed))
+        kept = _thinned(px, spacing_px)
+        field[~observed] = np.nan
+        return cls(field, px[kept], normals[kept])
+
+
+def signed_distances(mask: np.ndarray) -> np.ndarray:
+    """(H, W) px from each pixel's centre to the mask's boundary, negative inside.
+
+    The boundary runs between pixels, so no centre is nearer than half a pixel.
+    """
+    inside = mask.astype(np.uint8)
+    depth = cv2.distanceTransform(inside, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
+    height = cv2.distanceTransform(1 - inside, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
+    return np.where(mask, 0.5 - depth, height - 0.5)
+
+
+def _crossings(foreground: np.ndarray, observed: np.ndarray) -> np.ndarray:
+    """(n, 2) float32 px midway between neighbours of which one is foreground, both observed."""
+    found = []
+    for one, other, shift in (
+        (np.s_[:, :-1], np.s_[:, 1:], (0.5, 0.0)),
+        (np.s_[:-1], np.s_[1:], (0.0, 0.5)),
+    ):
+        crossing = (foreground[one] != foreground[other]) & observed[one] & observed[other]
+        found.append(np.argwhere(crossing)[:, ::-1] + shift)
+    return np.concatenate(found).astype(np.float32)
+
+
+def _on_zero(field: np.ndarray, px: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Points (n, 2) moved on to the zero level of the field along its gradient, and that."""
+    if not len(px):
+        return px, px
+    slopes = cv2.Sobel(field, -1, 1, 0, scale=1 / 8), cv2.Sobel(field, -1, 0, 1, scale=1 / 8)
+    values = [
+        cv2.remap(picture, px[:, 0], px[:, 1], cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
+        for picture in (field, *slopes)
+    ]
+    value, x, y = (v[:, 0] for v in values)
+    length = np.maximum(np.hypot(x, y), 1e-6)
+    normals = np.stack([x, y], axis=1) / length[:, None]
+    return px - normals * (value / length)[:, None], normals
+
+
+def _thinned(px: np.ndarray, spacing_px: float) -> np.ndarray:
+    """Indices of one point per square of ``spacing_px``."""
+    squares = np.floor(px / spacing_px).astype(np.int64)
+    return np.sort(np.unique(squares @ [1, 1 << 32], return_index=True)[1])

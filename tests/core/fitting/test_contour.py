@@ -1,0 +1,113 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from silhouette_mocap.core.body.kinematics import within_limits
+from silhouette_mocap.core.fitting.contour import ContourSettings, ContourTracker
+from silhouette_mocap.core.rendering.native import NativeEvaluator
+from silhouette_mocap.core.silhouettes.silhouette import Silhouette
+from synthetic import dof_values, evaluator, filmed, point_errors, small_body, small_studio
+
+PIXEL_M = 0.033
+
+
+def mean_error(body, pose, truth):
+    return np.mean(list(point_errors(body, pose, truth).values()))
+
+
+def bent(body):
+    return dof_values(
+        body,
+        root_x=0.03,
+        root_y=-0.04,
+        root_yaw=0.1,
+        left_shoulder_flexion=0.3,
+        left_elbow_flexion=0.5,
+        right_elbow_flexion=0.4,
+        left_hip_flexion=0.3,
+        left_knee_flexion=0.4,
+        right_knee_flexion=0.2,
+    )
+
+
+@pytest.mark.parametrize("name", ["performer", "sixteen_segment"])
+def test_a_pose_nearby_is_found_to_a_fraction_of_a_pixel(name):
+    body, cameras = small_body(name), small_studio()
+    truth = bent(body)
+    tracker = ContourTracker(body, cameras, evaluator)
+    fit = tracker.fit(filmed(body, cameras, truth), body.rest_pose, body.rest_pose)
+    assert mean_error(body, fit.pose, truth) < 0.4 * PIXEL_M
+    pixels = tracker.evaluator.silhouettes(fit.pose)
+    differ = sum(
+        np.count_nonzero(a ^ b.foreground)
+        for a, b in zip(pixels, filmed(body, cameras, truth), strict=True)
+    )
+    assert fit.energy == differ
+
+
+def test_a_limb_that_jumps_is_sought_and_found():
+    body, cameras = small_body("performer"), small_studio()
+    start, truth = bent(body), bent(body)
+    truth[body.dofs.names.index("left_hip_flexion")] = 1.9
+    truth[body.dofs.names.index("left_knee_flexion")] = 1.5
+    seen = filmed(body, cameras, truth)
+    ankles = []
+    for candidates in (0, ContourSettings().candidates):
+        settings = replace(ContourSettings(), candidates=candidates)
+        fit = ContourTracker(body, cameras, evaluator, settings).fit(seen, start, start)
+        ankles.append(point_errors(body, fit.pose, truth)["left_ankle"])
+    assert ankles[1] < PIXEL_M
+    assert ankles[0] > 0.5
+
+
+def test_no_pose_leaves_the_limits():
+    body, cameras, rng = small_body("performer"), small_studio(), np.random.default_rng(4)
+    tracker = ContourTracker(body, cameras, evaluator)
+    for _ in range(4):
+        beyond = bent(body) + rng.normal(0, 0.3, len(body.dofs))
+        beyond[body.dofs.names.index("left_knee_flexion")] = -0.4
+        fit = tracker.fit(filmed(body, cameras, beyond), body.rest_pose, body.rest_pose)
+        assert within_limits(body, fit.pose[None])[0]
+
+
+def test_a_limit_that_stops_one_joint_leaves_the_others_free():
+    body, cameras = small_body("performer"), small_studio()
+    truth = dof_values(body, waist_flexion=-0.25, chest_flexion=-0.25, neck_flexion=-0.5)
+    # the waist can bend back no more, so that the neck alone can follow
+    start = dof_values(body, waist_flexion=-0.26, chest_flexion=-0.26, neck_flexion=0.3)
+    settings = replace(ContourSettings(), candidates=0)
+    tracker = ContourTracker(body, cameras, evaluator, settings)
+    fit = tracker.fit(filmed(body, cameras, truth), start, start)
+    assert point_errors(body, fit.pose, truth)["head"] < PIXEL_M
+
+
+def test_a_view_that_shows_nobody_is_left_out():
+    body, cameras = small_body("performer"), small_studio()
+    truth = bent(body)
+    seen = list(filmed(body, cameras, truth))
+    empty = np.zeros_like(seen[0].foreground)
+    seen[0] = Silhouette(empty, ~empty)
+    tracker = ContourTracker(body, cameras, evaluator)
+    fit = tracker.fit(tuple(seen), body.rest_pose, body.rest_pose)
+    assert mean_error(body, fit.pose, truth) < 0.6 * PIXEL_M
+
+
+def test_where_nobody_is_seen_the_last_pose_stays():
+    body, cameras = small_body("performer"), small_studio()
+    empty = np.zeros((120, 160), bool)
+    seen = tuple(Silhouette(empty, ~empty) for _ in cameras)
+    last, predicted = bent(body), body.rest_pose
+    fit = ContourTracker(body, cameras, evaluator).fit(seen, last, predicted)
+    np.testing.assert_array_equal(fit.pose, last)
+
+
+def test_any_number_of_threads_finds_the_same_pose_bit_by_bit():
+    body, cameras = small_body("performer"), small_studio()
+    seen = filmed(body, cameras, bent(body))
+    poses = []
+    for threads in (1, 2):
+        tracker = ContourTracker(
+            body, cameras, lambda b, c, threads=threads: NativeEvaluator(b, c, threads=threads)
+        )
+        poses.append(tracker.fit(seen, body.rest_pose, body.rest_pose).pose)
+    np.testing.assert_array_equal(*poses)
