@@ -10,7 +10,7 @@ import numpy as np
 from .energy.evaluator import Evaluator
 from .errors import MocapError
 from .files import made_folder
-from .fitting.hierarchical import SETTINGS, HierarchicalTracker
+from .fitting.search import Search
 from .fitting.tracking import FrameFit, track
 from .initialisation.first_pose import FirstFit, PoseRequest, initialised
 from .initialisation.plausibility import check_first_fit
@@ -35,7 +35,7 @@ from .results.writing import (
 from .silhouettes.silhouette import Silhouette
 from .take.first_look import check_first_look
 from .take.performer import known_height, performer_body
-from .take.take import Search, Take
+from .take.take import Take
 from .take.views import Views, open_views
 
 _MOST_INITIAL_FRAMES = 8
@@ -167,9 +167,8 @@ def _track(outcome: Outcome, request: FitRequest, progress: Progress) -> None:
     """Tracks what is not in the journal yet: from the initial pose on, then what comes before."""
     views, journal, choice = outcome.views, outcome.journal, outcome.choice
     start = int(journal.start.frames[0])
-    setting = SETTINGS[request.search.setting][request.search.fast_motion]
     make_evaluator = with_level_for(journal.start.pose, choice)
-    tracker = HierarchicalTracker(journal.start.body, views.cameras, make_evaluator, setting)
+    tracker = request.search.made(journal.start.body, views.cameras, make_evaluator)
     first, last = views.frames
     finished = journal.poses()
     progress.begin("fit", last - first + 1 - len(finished))

@@ -15,8 +15,11 @@ import numpy as np
 from ..body.body import Body
 from ..body.kinematics import rest_height
 from ..body.scaling import scaled
+from ..cameras.camera import Camera
 from ..fitting.hierarchical import SETTINGS, HierarchicalTracker
 from ..fitting.scores import frame_scores
+from ..fitting.search import Search
+from ..fitting.tracker import EvaluatorFactory, Tracker
 from ..initialisation.first_pose import placed
 from ..initialisation.pose_kinds import pose_of_kind
 from ..motion.overlay import JPEG_QUALITY, Tile, overlay_picture
@@ -111,8 +114,14 @@ def estimated(trial: Trial, reading_s: float) -> Estimate:
     body = _standing_body(trial)
     pose = pose_of_kind(body, trial.take.initial_pose.kind)
     pose = placed(pose, body, trial.performer.centre, trial.take.floor)
-    tracker = _tracker(trial, body, pose)
-    round_s, scores_s = _timed_round(tracker, trial.silhouettes, pose)
+    make_evaluator = with_level_for(pose, trial.make_evaluator)
+    search, cameras = trial.take.search, trial.views.cameras
+    tracker = _one_round(search, body, cameras, make_evaluator)
+    round_s, scores_s = _timed_fit(tracker, trial.silhouettes, pose)
+    frame_s = _ROUNDS_PER_FRAME * round_s
+    if search.tracker != "hierarchical":
+        tracker = search.made(body, cameras, make_evaluator)
+        frame_s, _ = _timed_fit(tracker, trial.silhouettes, pose)
     picture_s, picture_bytes = _timed_picture(tracker, trial, pose)
     first, last = trial.views.frames
     frames, dofs = last - first + 1, len(body.dofs)
@@ -127,7 +136,7 @@ def estimated(trial: Trial, reading_s: float) -> Estimate:
         frames=frames,
         first_pose_s=_ROUNDS_OF_FIRST_POSE * round_s,
         reading_s=reading_s,
-        fitting_s=_ROUNDS_PER_FRAME * round_s + scores_s,
+        fitting_s=frame_s + scores_s,
         picture_s=picture_s,
         memory_bytes=_PROGRAM_BYTES + _picture_memory(trial.views) + 3 * motion,
         meanwhile_bytes=frames * picture_bytes + motion,
@@ -142,11 +151,12 @@ def estimated(trial: Trial, reading_s: float) -> Estimate:
     )
 
 
-def _tracker(trial: Trial, body: Body, pose: np.ndarray) -> HierarchicalTracker:
-    search = trial.take.search
+def _one_round(
+    search: Search, body: Body, cameras: tuple[Camera, ...], make_evaluator: EvaluatorFactory
+) -> HierarchicalTracker:
+    """The tracker that finds the first pose, for one round of its search."""
     setting = replace(SETTINGS[search.setting][search.fast_motion], rounds=1)
-    make_evaluator = with_level_for(pose, trial.make_evaluator)
-    return HierarchicalTracker(body, trial.views.cameras, make_evaluator, setting)
+    return HierarchicalTracker(body, cameras, make_evaluator, setting)
 
 
 def _standing_body(trial: Trial) -> Body:
@@ -157,10 +167,10 @@ def _standing_body(trial: Trial) -> Body:
     return scaled(body, trial.performer.height_m / rest_height(body))
 
 
-def _timed_round(
-    tracker: HierarchicalTracker, silhouettes: tuple[Silhouette, ...], pose: np.ndarray
+def _timed_fit(
+    tracker: Tracker, silhouettes: tuple[Silhouette, ...], pose: np.ndarray
 ) -> tuple[float, float]:
-    """Seconds of one round of the search, and of scoring its result."""
+    """Seconds of a search, and of scoring its result."""
     # in a motion the prediction differs from the last pose, and is searched around, too
     predicted = pose.copy()
     predicted[0] += _NUDGE_M
@@ -171,9 +181,7 @@ def _timed_round(
     return searched - begun, time.perf_counter() - searched
 
 
-def _timed_picture(
-    tracker: HierarchicalTracker, trial: Trial, pose: np.ndarray
-) -> tuple[float, float]:
+def _timed_picture(tracker: Tracker, trial: Trial, pose: np.ndarray) -> tuple[float, float]:
     """Seconds to make and keep one overlay picture and its part of the video, and its bytes."""
     begun = time.perf_counter()
     rendered = tracker.evaluator.silhouettes(pose)

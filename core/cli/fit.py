@@ -4,13 +4,13 @@ import argparse
 from dataclasses import replace
 from pathlib import Path
 
+from ..fitting.search import TRACKERS
 from ..motion.export_request import FORMATS, Exporter
 from ..pipeline import FitRequest, fit
 from ..rendering.choice import EVALUATORS
 from ..results.exporting import check_formats, export
 from ..results.folder import occupied
 from ..results.writing import FitResult
-from ..take.take import TRACKERS
 from .arguments import add_cameras_and_frames, add_take, format_list, taken
 from .console import say
 from .interrupts import shielded

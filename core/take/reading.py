@@ -15,6 +15,7 @@ from ..cameras.calibration import READERS, WORLD_FROM_UP
 from ..cameras.units import METRES_PER_UNIT
 from ..errors import MocapError
 from ..fitting.hierarchical import SETTINGS
+from ..fitting.search import TRACKERS, Search
 from ..initialisation.plausibility import HEIGHTS_M
 from ..toml import read_toml
 from .paths import PATH_KEYS, followed, inside, names_files
@@ -23,13 +24,11 @@ from .take import (
     EXPORTS,
     EXTRACTIONS,
     INITIAL_KINDS,
-    TRACKERS,
     Adjustment,
     Calibrated,
     FootageFiles,
     InitialPose,
     Performer,
-    Search,
     Take,
 )
 
@@ -44,7 +43,7 @@ _TOP = (
 )  # fmt: skip
 _log = logging.getLogger(__name__)
 _LATER_EXTRACTIONS = ("horprasert", "chroma_key", "mog2", "knn")
-_LATER_TRACKERS = ("contour", "monte_carlo")
+_LATER_TRACKERS = ("monte_carlo",)
 _LATER_EXPORTS = ("c3d", "glb", "usd")
 
 
@@ -121,6 +120,13 @@ def _take(table: Table) -> Take:
     export.allow("formats")
     _refuse_later(fit, "tracker", _LATER_TRACKERS, TRACKERS)
     _refuse_later(export, "formats", _LATER_EXPORTS, EXPORTS)
+    tracker = fit.choice("tracker", TRACKERS, TRACKERS[0])
+    for key in ("setting", "fast_motion"):
+        if tracker != "hierarchical" and key in fit.values:
+            fit.fault(
+                f'"fit.{key}" belongs to the tracker hierarchical, not to {tracker}',
+                "remove one of them",
+            )
     floor = world.number("floor")
     return Take(
         path=table.file,
@@ -133,7 +139,7 @@ def _take(table: Table) -> Take:
         performer=_performer(table.table("performer")),
         floor=0.0 if floor is None else floor,
         search=Search(
-            tracker=fit.choice("tracker", TRACKERS, TRACKERS[0]),
+            tracker=tracker,
             setting=fit.choice("setting", SETTINGS, "robust"),
             fast_motion=fit.flag("fast_motion"),
         ),

@@ -4,8 +4,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
 
+from ..fitting.search import Search
+
 INITIAL_KINDS = ("A", "T", "elbows")
-TRACKERS = ("hierarchical",)
 EXTRACTIONS = ("statistics", "difference")
 EXPORTS = ("blend", "fbx", "bvh", "trc")
 
@@ -87,21 +88,6 @@ class Performer:
 
     body: str | Path
     height_m: float | None
-
-
-@dataclass(frozen=True)
-class Search:
-    """How to track.
-
-    Attributes:
-        tracker: one of `TRACKERS`.
-        setting: one of `fitting.hierarchical.SETTINGS`: "robust", or "faithful" to the paper.
-        fast_motion: whether limbs may turn far between two frames: wider, finer grids.
-    """
-
-    tracker: str = TRACKERS[0]
-    setting: str = "robust"
-    fast_motion: bool = False
 
 
 @dataclass(frozen=True)

@@ -12,13 +12,14 @@ from silhouette_mocap.core.body.kinematics import points, rest_height
 from silhouette_mocap.core.body.scaling import scaled
 from silhouette_mocap.core.body.templates import template
 from silhouette_mocap.core.errors import MocapError
+from silhouette_mocap.core.fitting import search
+from silhouette_mocap.core.fitting.search import Search
 from silhouette_mocap.core.motion.motion import read_motion
 from silhouette_mocap.core.pipeline import FitRequest, fit, initial_frames
 from silhouette_mocap.core.progress import Silence
 from silhouette_mocap.core.rendering import detail
 from silhouette_mocap.core.results.exporting import check_formats, export
 from silhouette_mocap.core.take import InitialPose, read_take
-from silhouette_mocap.core.take.take import Search
 
 
 class Notebook(Silence):
@@ -85,12 +86,12 @@ def test_the_surface_that_is_told_is_the_one_that_is_fitted(
 ):
     levels = []
 
-    class Watched(pipeline.HierarchicalTracker):
+    class Watched(search.HierarchicalTracker):
         def __init__(self, *arguments):
             super().__init__(*arguments)
             levels.append((self.evaluator.level, self.half_evaluator.level))
 
-    monkeypatch.setattr(pipeline, "HierarchicalTracker", Watched)
+    monkeypatch.setattr(search, "HierarchicalTracker", Watched)
     # at 34 px to the metre the coarse outline is 0.020 px off, in halved pictures 0.010
     monkeypatch.setattr(detail, "OUTLINE_PX", 0.015)
     result = fit(read_take(small_take), FitRequest(tmp_path / "out", frames=(0, 0)), Silence())
@@ -106,6 +107,16 @@ def test_the_take_chooses_how_hard_to_search(quick_start, small_take, tmp_path):
         evaluations[setting] = sum(result.report["evaluations_per_frame"])
         assert result.report["settings"]["setting"] == setting
     assert evaluations["faithful"] < 0.7 * evaluations["robust"]
+
+
+def test_the_tracker_contour_finds_the_truth_with_fewer_evaluations(fitted, small_take, tmp_path):
+    request = FitRequest(tmp_path / "out", search=Search(tracker="contour"))
+    result = fit(read_take(small_take), request, Silence())
+    assert result.report["settings"]["tracker"] == "contour"
+    assert result.report["error_mm"]["absolute"]["mean"] < 20
+    assert result.report["lost_frames"] == []
+    other = fitted[0].report["evaluations_per_frame"]
+    assert np.median(result.report["evaluations_per_frame"]) < 0.7 * np.median(other)
 
 
 def test_frames_before_the_initial_pose_are_tracked_backwards(quick_start, small_take, tmp_path):

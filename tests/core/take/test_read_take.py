@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 from silhouette_mocap.core.errors import MocapError
+from silhouette_mocap.core.fitting.search import Search
 from silhouette_mocap.core.take import Adjustment, read_take
 from silhouette_mocap.core.take.reading import exact_fps
-from silhouette_mocap.core.take.take import Search
 
 MINIMAL = """
 version = 1
@@ -173,7 +173,8 @@ def test_a_fault_in_a_shared_file_names_the_shared_file(folder):
         ("[footage]", "[performer]\nheight_m = -1\n[footage]", '"performer.height_m"'),
         ("[footage]", '[fit]\nsetting = "quick"\n[footage]', "one of robust, faithful"),
         ("[footage]", "[fit]\nfast_motion = 1\n[footage]", "true or false"),
-        ("[footage]", '[fit]\ntracker = "contour"\n[footage]', "use hierarchical"),
+        ("[footage]", '[fit]\ntracker = "monte_carlo"\n[footage]', "use hierarchical, contour"),
+        ("[footage]", '[fit]\ntracker = "contour"\nfast_motion = true\n[footage]', "belongs to"),
         ("[footage]", '[export]\nformats = ["glb"]\n[footage]', '"glb" in "export.formats"'),
         ("[footage]", '[export]\nformats = "fbx"\n[footage]', "a list of texts"),
         ("[footage]", "[footage.difference]\na = 1\n[footage]", "of no use"),
