@@ -101,7 +101,7 @@ class _FrameSearch:
         self.prior_px = self.settings.prior_share * float(maps.constants.sum())
         self.tally = Tally()
         root = tracker.evaluator.transforms(self.last[None])[0, 0, :, 3]
-        metres = np.array([metres_per_pixel([camera], root) for camera in tracker.cameras])
+        metres = np.array([metres_per_pixel((camera,), root) for camera in tracker.cameras])
         spacings_px = self.settings.descent.spacing_m / metres
         contours = [
             ObservedContour.of(silhouette, spacing)
