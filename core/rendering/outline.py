@@ -58,7 +58,12 @@ def find_outlines(
     """V outlines of the segments, given the V pictures (H, W) of what they cover.
 
     A segment that a camera sees from too near, or far outside its picture, has no points there.
+
+    Raises:
+        ValueError: no positive spacing.
     """
+    if not spacing_px > 0:
+        raise ValueError(f"expected a positive spacing, got {spacing_px}")
     outlines = []
     views = zip(posed.transforms(len(cameras)), cameras, pictures, strict=True)
     for placed, camera, picture in views:

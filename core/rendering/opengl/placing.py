@@ -162,7 +162,8 @@ class Placer:
         states = _states(centres, spheres[:, 3], planes)
         states[np.broadcast_to(~_somewhere(world), states.shape)] = HIDDEN
         reach = _reach(centres, spheres[:, 3], projections, windows, states)
-        return Placement(rows.astype(np.float32), states, reach)
+        with np.errstate(over="ignore"):
+            return Placement(rows.astype(np.float32), states, reach)
 
     def bounds(self, transforms: np.ndarray, segments: Sequence[int]) -> np.ndarray:
         """(N, V, 4) int32: x0, y0, x1, y1 (exclusive), px that the segments can cover, unclipped.

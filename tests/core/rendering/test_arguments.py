@@ -108,6 +108,14 @@ def test_levels_and_cameras_that_cannot_be_are_refused(kind, scenes, scene):
             views_record(wide, 1)
 
 
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("spacing", [0, -1.0, np.nan])
+def test_outlines_without_a_spacing_are_refused(kind, spacing, scene):
+    body, cameras = scene
+    with pytest.raises(ValueError, match=r"spacing|sizes"):
+        kind(body, cameras).outline(body.rest_pose, spacing_px=spacing)
+
+
 def test_no_threads_are_refused(scene):
     for threads in (0, -3):
         with pytest.raises(ValueError, match="at least one thread"):
