@@ -27,7 +27,8 @@ TESTS = [
         *("invariants", "invariants_meshes"),
     )
 ]
-TESTS += ["tests/core/native"]
+TESTS += ["tests/core/native", "tests/core/fitting/test_contour_targets.py"]
+TESTS += ["tests/core/fitting/test_twists.py"]
 FEW = "every_side or triangles_apart or another_order or fixed_otherwise or more_crossings"
 """Tests enough for valgrind, which takes fifty times as long."""
 
