@@ -22,7 +22,7 @@ from ..silhouettes.silhouette import Silhouette
 from .contour_descent import Descent, DescentSettings
 from .contour_targets import ContourTargets
 from .part_search import metres_per_pixel, rest_prior
-from .tracker import EvaluatorFactory, PoseFit, Tally
+from .tracker import EvaluatorFactory, PoseFit, Tally, shows_nobody
 
 _SOUGHT = ("left_arm", "right_arm", "left_leg", "right_leg", "head")
 _APART_RAD = 0.25
@@ -85,7 +85,7 @@ class ContourTracker:
     ) -> PoseFit:
         """The pose that explains the V silhouettes best, searched from two poses (D,).
 
-        Where no view shows a contour, it is the last one.
+        Where the views show nobody, it is the last one.
         """
         return _FrameSearch(self, silhouettes, last, predicted).run()
 
@@ -98,7 +98,9 @@ class _FrameSearch:
         self.last, self.predicted = clamped(tracker.body, np.stack([last, predicted]))
         maps = xor_weight_maps(silhouettes)
         self.weights = tracker.evaluator.prepared(maps)
-        self.prior_px = self.settings.prior_share * float(maps.constants.sum())
+        observed_px = int(maps.constants.sum())
+        self.shown = not shows_nobody(tracker.evaluator, self.last, observed_px)
+        self.prior_px = self.settings.prior_share * observed_px
         self.tally = Tally()
         root = tracker.evaluator.transforms(self.last[None])[0, 0, :, 3]
         metres = np.array([metres_per_pixel((camera,), root) for camera in tracker.cameras])
@@ -107,7 +109,6 @@ class _FrameSearch:
             ObservedContour.of(silhouette, spacing)
             for silhouette, spacing in zip(silhouettes, spacings_px.tolist(), strict=True)
         ]
-        self.shown = any(len(contour.px) for contour in contours)
         self.targets = ContourTargets(tracker.body, tracker.cameras, contours, metres)
         self.spacing_px = float(spacings_px.max())
 

@@ -36,10 +36,9 @@ from ..silhouettes.silhouette import Silhouette
 from .part_search import FORBIDDEN, PartEnergy, first_steps, part_windows, rest_prior
 from .shares import shares_of
 from .torso_volume import TorsoVolume
-from .tracker import EvaluatorFactory, PoseFit, Tally
+from .tracker import EvaluatorFactory, PoseFit, Tally, shows_nobody
 
 _WINDOW_SIDES = {"limb": 128, "end": 64}
-_LEAST_AREA = 0.2
 
 
 @dataclass(frozen=True)
@@ -151,7 +150,10 @@ class _FrameSearch:
         }
 
     def run(self) -> PoseFit:
-        rounds = 0 if self._shows_nobody() else self.tracker.settings.rounds
+        rounds = self.tracker.settings.rounds
+        if shows_nobody(self.tracker.evaluator, self.last, self.observed_px):
+            rounds, self.pose = 0, self.last.copy()
+            self.cost = float(self._costs(self.pose[None])[0])
         for number in range(rounds):
             before, cost_before = self.pose.copy(), self.cost
             if self.tracker.settings.shared_out:
@@ -165,18 +167,6 @@ class _FrameSearch:
                 break
         prior = self.prior_px * rest_prior(self.tracker.body, self.pose[None])[0]
         return PoseFit(self.pose, round(self.cost - prior), self.tally)
-
-    def _shows_nobody(self) -> bool:
-        """Whether the silhouettes hold a fraction only of what the last pose covers.
-
-        A search would then walk the body out of the pictures, from where none leads back.
-        """
-        covered = sum(np.count_nonzero(p) for p in self.tracker.evaluator.silhouettes(self.last))
-        if self.observed_px >= _LEAST_AREA * covered:
-            return False
-        self.pose = self.last.copy()
-        self.cost = float(self._costs(self.pose[None])[0])
-        return True
 
     def _search_all(self, parts: Sequence[Part], number: int) -> None:
         for part in parts:

@@ -6,7 +6,6 @@ import numpy as np
 
 from ..body.body import POINT_NAMES, Body
 from ..energy.evaluator import Evaluator
-from ..silhouettes.observed_contour import signed_distances
 from ..silhouettes.silhouette import Silhouette
 from .part_search import metres_per_pixel
 
@@ -46,7 +45,7 @@ def frame_scores(
     ).T
     with np.errstate(invalid="ignore", divide="ignore"):
         iou = np.where(union > 0, 1.0 - xor / union, np.nan)
-    fields = [signed_distances(s.foreground) for s in silhouettes]
+    fields = [silhouette.distances for silhouette in silhouettes]
 
     def distances_of(parts: tuple[np.ndarray, ...]) -> np.ndarray:
         views = zip(parts, rendered, fields, silhouettes, strict=True)
@@ -105,7 +104,7 @@ def contour_distances(
 ) -> np.ndarray:
     """(n,) px from the model's contour, as far as it belongs to ``part``, to the observed one.
 
-    ``distance`` holds the `signed_distances` of the observed silhouette. The model's contour
+    ``distance`` holds the `Silhouette.distances` of the observed one. The model's contour
     runs between two neighbouring pixels, one inside and one outside; there the distance is the
     mean of theirs. The picture's edge is no contour.
     """

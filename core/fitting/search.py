@@ -8,7 +8,7 @@ from .contour import ContourTracker
 from .hierarchical import SETTINGS, HierarchicalTracker
 from .tracker import EvaluatorFactory, Tracker
 
-TRACKERS = ("hierarchical", "contour")
+TRACKERS = ("contour", "hierarchical")
 
 
 @dataclass(frozen=True)

@@ -13,6 +13,8 @@ from ..silhouettes.silhouette import Silhouette
 
 EvaluatorFactory = Callable[[Body, tuple[Camera, ...]], Evaluator]
 
+_LEAST_AREA = 0.2
+
 
 @dataclass
 class Tally:
@@ -45,6 +47,15 @@ class PoseFit:
     pose: np.ndarray
     energy: int
     tally: Tally
+
+
+def shows_nobody(evaluator: Evaluator, pose: np.ndarray, observed_px: int) -> bool:
+    """Whether ``observed_px`` of foreground are a fraction only of what a pose (D,) covers.
+
+    A search would then walk the body out of the pictures, from where none leads back.
+    """
+    covered = sum(np.count_nonzero(picture) for picture in evaluator.silhouettes(pose))
+    return observed_px < _LEAST_AREA * covered
 
 
 class Tracker(Protocol):

@@ -33,22 +33,11 @@ class ObservedContour:
         foreground, observed = silhouette.foreground, silhouette.observed
         if not foreground.any() or foreground.all():
             return cls(np.full(foreground.shape, np.nan, np.float32), nowhere, nowhere)
-        field = cv2.GaussianBlur(signed_distances(foreground).astype(np.float32), (0, 0), BLUR_PX)
+        field = cv2.GaussianBlur(silhouette.distances, (0, 0), BLUR_PX)
         px, normals = _on_zero(field, _crossings(foreground, observed))
         kept = _thinned(px, spacing_px)
         field[~observed] = np.nan
         return cls(field, px[kept], normals[kept])
-
-
-def signed_distances(mask: np.ndarray) -> np.ndarray:
-    """(H, W) px from each pixel's centre to the mask's boundary, negative inside.
-
-    The boundary runs between pixels, so no centre is nearer than half a pixel.
-    """
-    inside = mask.astype(np.uint8)
-    depth = cv2.distanceTransform(inside, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
-    height = cv2.distanceTransform(1 - inside, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
-    return np.where(mask, 0.5 - depth, height - 0.5)
 
 
 def _crossings(foreground: np.ndarray, observed: np.ndarray) -> np.ndarray:

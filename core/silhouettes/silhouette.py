@@ -1,7 +1,9 @@
 """What one view shows of the performer."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
+import cv2
 import numpy as np
 
 
@@ -17,3 +19,14 @@ class Silhouette:
 
     foreground: np.ndarray
     observed: np.ndarray
+
+    @cached_property
+    def distances(self) -> np.ndarray:
+        """(H, W) float32 px from each pixel's centre to the foreground's boundary, negative inside.
+
+        The boundary runs between pixels, so no centre is nearer than half a pixel.
+        """
+        inside = self.foreground.astype(np.uint8)
+        depth = cv2.distanceTransform(inside, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
+        height = cv2.distanceTransform(1 - inside, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
+        return np.where(self.foreground, 0.5 - depth, height - 0.5)

@@ -125,7 +125,7 @@ def _take(table: Table) -> Take:
         if tracker != "hierarchical" and key in fit.values:
             fit.fault(
                 f'"fit.{key}" belongs to the tracker hierarchical, not to {tracker}',
-                "remove one of them",
+                f'write tracker = "hierarchical", or remove "{key}"',
             )
     floor = world.number("floor")
     return Take(

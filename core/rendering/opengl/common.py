@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Generic, TypeVar
 
 import numpy as np
@@ -20,7 +21,7 @@ from ..arguments import (
     picture_sizes,
 )
 from ..model import check_cameras
-from ..outline import Posed, find_outlines
+from ..native import NativeEvaluator
 from .canvas import DeviceMesh, Range, drawing_range
 from .context import GlThread, no_opengl, shared_thread
 from .meshes import segment_mesh
@@ -173,10 +174,15 @@ class OpenGLBase(Generic[Held]):
     def outline(
         self, pose: np.ndarray, segments: Sequence[int] | None = None, spacing_px: float = 1.0
     ) -> tuple[Outline, ...]:
-        """V outlines of what the segments cover, in steps of at most ``spacing_px``."""
-        pictures = self.silhouettes(pose, segments)
-        posed = Posed(self.body, self.level, pose, self._chosen(segments))
-        return find_outlines(posed, self.cameras, pictures, spacing_px)
+        """V outlines of what the segments cover, in steps of at most ``spacing_px``.
+
+        The native kernel's: what it covers differs by single pixels from what OpenGL does.
+        """
+        return self._kernel.outline(pose, segments, spacing_px)
+
+    @cached_property
+    def _kernel(self) -> NativeEvaluator:
+        return NativeEvaluator(self.body, self.cameras, self.level)
 
     def _check(self, weights: Held) -> None:
         """Refuses with a ValueError weights that are not the mode's own, or of other sizes."""

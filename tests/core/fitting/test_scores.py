@@ -7,7 +7,7 @@ from silhouette_mocap.core.fitting.scores import (
     frame_scores,
     limb_segments,
 )
-from silhouette_mocap.core.silhouettes.observed_contour import signed_distances
+from silhouette_mocap.core.silhouettes.silhouette import Silhouette
 from synthetic import dof_values, evaluator, filmed, small_body, small_studio
 
 
@@ -59,7 +59,8 @@ def test_every_segment_belongs_to_one_limb():
 def test_contour_distances_are_those_of_a_grown_square():
     square = np.zeros((40, 40), bool)
     square[10:30, 10:30] = True
-    distance, everywhere = signed_distances(square), np.ones_like(square)
+    everywhere = np.ones_like(square)
+    distance = Silhouette(square, everywhere).distances
     assert not contour_distances(everywhere, square, distance, everywhere).any()
     grown = np.zeros_like(square)
     grown[8:32, 8:32] = True
