@@ -120,13 +120,6 @@ def _take(table: Table) -> Take:
     export.allow("formats")
     _refuse_later(fit, "tracker", _LATER_TRACKERS, TRACKERS)
     _refuse_later(export, "formats", _LATER_EXPORTS, EXPORTS)
-    tracker = fit.choice("tracker", TRACKERS, TRACKERS[0])
-    for key in ("setting", "fast_motion"):
-        if tracker != "hierarchical" and key in fit.values:
-            fit.fault(
-                f'"fit.{key}" belongs to the tracker hierarchical, not to {tracker}',
-                f'write tracker = "hierarchical", or remove "{key}"',
-            )
     floor = world.number("floor")
     return Take(
         path=table.file,
@@ -138,13 +131,24 @@ def _take(table: Table) -> Take:
         footage=_footage(table.table("footage")),
         performer=_performer(table.table("performer")),
         floor=0.0 if floor is None else floor,
-        search=Search(
-            tracker=tracker,
-            setting=fit.choice("setting", SETTINGS, "robust"),
-            fast_motion=fit.flag("fast_motion"),
-        ),
+        search=_search(fit),
         exports=export.words("formats", EXPORTS),
     )
+
+
+def _search(fit: Table) -> Search:
+    search = Search(
+        tracker=fit.choice("tracker", TRACKERS, TRACKERS[0]),
+        setting=fit.choice("setting", SETTINGS, "robust"),
+        fast_motion=fit.flag("fast_motion"),
+    )
+    for key in ("setting", "fast_motion"):
+        if search.tracker != "hierarchical" and key in fit.values:
+            fit.fault(
+                f'"{fit.key(key)}" belongs to the tracker hierarchical, not to {search.tracker}',
+                f'write tracker = "hierarchical", or remove "{key}"',
+            )
+    return search
 
 
 def _refuse_later(table: Table, key: str, later: tuple[str, ...], instead: tuple[str, ...]) -> None:

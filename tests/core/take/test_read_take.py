@@ -76,7 +76,7 @@ def test_the_least_that_a_take_needs_is_enough(folder):
     assert take.cameras.calibration == folder / "calibration.toml"
     assert take.footage.silhouettes == str(folder / "masks/{camera}/{frame:06d}.png")
     assert (take.performer.body, take.performer.height_m, take.floor) == ("performer", None, 0)
-    assert (take.search, take.exports) == (Search("hierarchical", "robust", False), ())
+    assert (take.search, take.exports) == (Search("contour", "robust", False), ())
 
 
 def test_every_key_that_works_arrives(folder):
@@ -173,7 +173,7 @@ def test_a_fault_in_a_shared_file_names_the_shared_file(folder):
         ("[footage]", "[performer]\nheight_m = -1\n[footage]", '"performer.height_m"'),
         ("[footage]", '[fit]\nsetting = "quick"\n[footage]', "one of robust, faithful"),
         ("[footage]", "[fit]\nfast_motion = 1\n[footage]", "true or false"),
-        ("[footage]", '[fit]\ntracker = "monte_carlo"\n[footage]', "use hierarchical, contour"),
+        ("[footage]", '[fit]\ntracker = "monte_carlo"\n[footage]', "use contour, hierarchical"),
         ("[footage]", '[fit]\ntracker = "contour"\nfast_motion = true\n[footage]', "belongs to"),
         ("[footage]", '[export]\nformats = ["glb"]\n[footage]', '"glb" in "export.formats"'),
         ("[footage]", '[export]\nformats = "fbx"\n[footage]', "a list of texts"),
