@@ -64,8 +64,14 @@ static void ask(reader *r, scene *s, question *q) {
     for (int32_t k = 0; k < q->count; k++) q->segments[k] = (int32_t)read_below(r, (uint32_t)s->body.segments);
     q->room = (int64_t)read_below(r, 40) * (int64_t)(1 + read_below(r, 30));
     q->spacing = 0.25 * (1 + read_below(r, 60));
+    q->skew = read_below(r, 8);
+}
+
+/* The calls that follow go by this code path, with scratch of just the size that it needs. */
+static void go_by(scene *s, question *q, int32_t processor) {
+    s->views.processor = processor;
     q->bytes = sm_scratch(&s->body, &s->views);
-    q->scratch = (char *)new_room(s, q->bytes + 7, 1) + read_below(r, 8);
+    q->scratch = (char *)new_room(s, q->bytes + 7, 1) + q->skew;
 }
 
 static sm_points new_points(scene *s, int64_t room) {
@@ -75,11 +81,11 @@ static sm_points new_points(scene *s, int64_t room) {
 }
 
 /* One code path's answers; in the second energies poses are per view. */
-static answer answer_by(scene *s, const question *q, const sm_weights *weights, int32_t processor) {
+static answer answer_by(scene *s, question *q, const sm_weights *weights, int32_t processor) {
     size_t views = (size_t)s->views.views, n = (size_t)q->poses;
     answer a = {new_words(s, q), {new_room(s, n * views, 8), new_room(s, n * views, 8)}, new_room(s, 4 * n * views, 4),
                 new_room(s, 2 * views * (size_t)s->body.vertices, 4), new_points(s, q->room)};
-    s->views.processor = processor;
+    go_by(s, q, processor);
     CALL(sm_snapped, q->pose, a.snapped);
     CALL(sm_bounds, q->pose, q->poses, 0, q->segments, q->count, a.bounds);
     CALL(sm_silhouettes, q->pose, 0, q->segments, q->count, a.bits);

@@ -55,7 +55,7 @@ typedef struct {
     int64_t *constants, room;
     double spacing;
     void *scratch;
-    size_t bytes;
+    size_t bytes, skew; /* of the scratch, and of its begin */
 } question;
 
 typedef struct {
