@@ -121,7 +121,9 @@ def estimated(trial: Trial, reading_s: float) -> Estimate:
     frame_s = _ROUNDS_PER_FRAME * round_s
     if search.tracker != "hierarchical":
         tracker = search.made(body, cameras, make_evaluator)
-        frame_s, _ = _timed_fit(tracker, trial.silhouettes, pose)
+        # from a pose as near as that of the frame before is
+        near = tracker.fit(trial.silhouettes, pose, pose).pose
+        frame_s, _ = _timed_fit(tracker, trial.silhouettes, near)
     picture_s, picture_bytes = _timed_picture(tracker, trial, pose)
     first, last = trial.views.frames
     frames, dofs = last - first + 1, len(body.dofs)
