@@ -119,8 +119,7 @@ class _FrameSearch:
         rng = np.random.default_rng(0)
         for part in self.tracker.sought if self.shown and self.settings.candidates else ():
             self._seek(part, rng)
-        prior = self.prior_px * rest_prior(self.body, self.pose[None])[0]
-        return PoseFit(self.pose, round(self.cost - prior), self.tally)
+        return PoseFit(self.pose, self.energy, self.tally)
 
     def _descended(self, start: np.ndarray, expected: np.ndarray, share: float) -> np.ndarray:
         first, last = self.settings.reaches_m
@@ -181,4 +180,4 @@ class _FrameSearch:
         self.tally.evaluated += len(poses)
         costs = np.round(pixels + self.prior_px * rest_prior(self.body, poses), 6)
         best = int(np.argmin(costs))
-        self.pose, self.cost = poses[best], float(costs[best])
+        self.pose, self.energy = poses[best], int(pixels[best])

@@ -1,6 +1,7 @@
 """Bodies and cameras in the form the native kernel takes: flat arrays behind one record each."""
 
 from collections.abc import Iterable, Sequence
+from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
@@ -57,8 +58,9 @@ def enclosing_spheres(vertices: np.ndarray, starts: np.ndarray) -> np.ndarray:
     return spheres
 
 
+@lru_cache(maxsize=8)
 def body_record(body: Body, level: int) -> BodyRecord:
-    """The body at one level of detail as the kernel's ``sm_body``."""
+    """The body at one level of detail as the kernel's ``sm_body``, which nobody changes."""
     surface, dofs = body.surfaces[level], body.dofs
     joints, segments = len(body.joint_names), len(body.segment_names)
     bounds = zip(pairwise(surface.vertex_starts), pairwise(surface.triangle_starts), strict=True)
