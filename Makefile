@@ -8,7 +8,7 @@ MOCAP := .venv/bin/silhouette-mocap
 KERNEL := $(wildcard core/native/build.py core/native/*.c core/native/*.h)
 CORE_TESTS := tests/core tests/test_layers.py
 
-.PHONY: help env demo demo-real test lint test-core test-command test-addon bench speed fuzz fuzz-kernel sanitize-kernel long-take blender clean
+.PHONY: help env demo demo-real test lint test-core test-command test-addon bench bench-tracking speed fuzz fuzz-kernel sanitize-kernel long-take blender clean
 
 help: ## This list
 	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /make \1\t/' | expand -t 18
@@ -61,6 +61,10 @@ prototypes ?= $(wildcard ../shared/prototypes)
 bench: .venv/.ready ## Tables 1 and 2 of the 2003 paper on this machine, into out/bench
 	@$(if $(prototypes),,echo "no frozen baselines in ../shared/prototypes: their rows are left out")
 	@$(MOCAP) bench energy --json out/bench/energy.json --out out/bench $(addprefix --prototypes ,$(prototypes))
+
+takes ?=
+bench-tracking: .venv/.ready ## Errors and speed of the trackers, into out/bench; takes="a/take.toml b/take.toml" for others
+	@$(MOCAP) bench tracking $(takes) --json out/bench/tracking.json --out out/bench
 
 speed: ## Put what make bench measured into the README
 	@.venv/bin/python .ci/speed.py out/bench

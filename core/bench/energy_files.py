@@ -1,5 +1,6 @@
 """The files of the benchmark of the energy."""
 
+from collections.abc import Mapping
 from pathlib import Path
 
 from ..files import made_folder, whole_file
@@ -23,6 +24,15 @@ def write_energy_files(figures: EnergyFigures, folder: Path) -> list[Path]:
         README: readme_section(figures, README_PICTURES),
         **{f"{name}.svg": text for name, text in pictures(figures).items()},
     }
+    return write_texts(texts, folder)
+
+
+def write_texts(texts: Mapping[str, str], folder: Path) -> list[Path]:
+    """Writes files by their names.
+
+    Raises:
+        MocapError: they cannot be written.
+    """
     made_folder(folder)
     paths = [folder / name for name in texts]
     for path, text in zip(paths, texts.values(), strict=True):

@@ -31,7 +31,7 @@ COMMANDS = {
     "export": "write the result of a fit in further formats",
     "score": "measure the error of a motion against a reference, in mm",
     "info": "check everything that fit will meet and say what is missing",
-    "bench": "measure how fast this machine is, as Tables 1 and 2 of the 2003 paper do",
+    "bench": "measure how fast energies are on this machine, and how well the trackers hold on",
 }
 # OpenCV reads it when it is loaded, by the commands: a damaged file may claim any number of pixels
 os.environ.setdefault("OPENCV_IO_MAX_IMAGE_PIXELS", str(50_000_000))

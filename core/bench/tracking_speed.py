@@ -1,0 +1,249 @@
+"""How fast a take is tracked, where the time goes, and what the same work took before.
+
+The baseline is what Theobalt et al. 2003 did, on the machine at hand: Powell's method by scipy,
+one energy at a time, and a grid for each limb, with the energy computed by OpenGL as in the paper
+(`rendering.opengl.paper`) on a mesh as fine as theirs.
+"""
+
+import tempfile
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..body.body import Body
+from ..cameras.camera import Camera
+from ..energy.evaluator import Evaluator
+from ..errors import MocapError
+from ..fitting.hierarchical import FAITHFUL, HierarchicalTracker
+from ..fitting.search import Search
+from ..fitting.tracker import Tracker
+from ..fitting.tracking import track
+from ..pipeline import FitRequest, fit, initial_frames
+from ..progress import Progress, Silence
+from ..rendering.choice import MakeEvaluator
+from ..rendering.detail import with_level_for
+from ..rendering.native import NativeEvaluator
+from ..rendering.opengl.paper import PaperEvaluator
+from ..take.take import Take
+from ..take.views import open_views
+from .disturbances.recording import Recording
+from .energy import named
+from .rows import full_level
+from .stopwatch import Stopwatch
+from .tracking_runs import DEFAULT, Advance, Track, Variant, tracked
+from .tracking_takes import Beginning, KnownTake, native_choice
+
+READ, PREPARED, OUTLINES, EQUATIONS = (
+    "footage read", "contours and weights", "descents: outlines drawn", "descents: equations",
+)  # fmt: skip
+JUDGED, LIMBS, SCORES, KEPT = "poses judged", "limbs judged", "scores", "overlay and files"
+STAGES = (READ, PREPARED, OUTLINES, EQUATIONS, JUDGED, LIMBS, SCORES, KEPT)
+HIERARCHICAL = Variant("hierarchical", Search("hierarchical").made)
+BASELINE = Variant("2003", partial(HierarchicalTracker, settings=FAITHFUL))
+
+
+@dataclass(frozen=True)
+class SpeedSettings:
+    """How much to measure.
+
+    Attributes:
+        frames: with the default tracker, from the initial pose on; None for all.
+        hierarchical_frames: with the tracker hierarchical.
+        baseline_frames: with the baseline.
+    """
+
+    frames: int | None = None
+    hierarchical_frames: int = 10
+    baseline_frames: int = 3
+
+    def steps(self, frames: int) -> int:
+        """How many frames are told to the progress where the default tracker has ``frames``."""
+        return 4 * frames + self.hierarchical_frames + self.baseline_frames
+
+
+@dataclass(frozen=True, eq=False)
+class SpeedFigures:
+    """Of one take, with the default tracker unless said.
+
+    Attributes:
+        take: its name.
+        cameras: in words.
+        frames: that were tracked.
+        all_told: seconds per frame of a fit, with all that belongs to it after the first pose.
+        stages: seconds per frame by `STAGES`; together ``all_told``.
+        threads: seconds per frame of tracking by number of threads.
+        same_bits: whether these came to the same poses and scores, bit by bit.
+        hierarchical: seconds per frame of the tracker hierarchical.
+        baseline: the same of the baseline; None where there is no OpenGL.
+        baseline_evaluations: energies per frame, likewise.
+        notes: what was left out, and why.
+    """
+
+    take: str
+    cameras: str
+    frames: int
+    all_told: float
+    stages: dict[str, float]
+    threads: dict[int, float]
+    same_bits: bool
+    hierarchical: float
+    baseline: float | None
+    baseline_evaluations: float | None
+    notes: tuple[str, ...]
+
+
+def speed_figures(
+    known: KnownTake, start: Beginning, settings: SpeedSettings, progress: Progress
+) -> SpeedFigures:
+    """Measures all of it; what is slow in the middle of the take, where the performer moves.
+
+    Raises:
+        MocapError: the take is at fault.
+    """
+    frames = [frame for frame in known.recording.frames if frame >= start.frame]
+    recording = replace(known.recording, frames=tuple(frames[: settings.frames]))
+    progress.begin(f"speed of {known.take.name}", settings.steps(len(recording.frames)))
+    stages = _stages(known.take, recording, start, progress.advance)
+    all_told = _all_told(known.take, recording.frames, progress)
+    one, two = (
+        tracked(recording, start, DEFAULT, progress.advance, threaded(count)) for count in (1, 2)
+    )
+    middle = len(recording.frames) // 2
+    later = replace(start, pose=one.motion.pose[middle - 1], frame=recording.frames[middle])
+    slow = _Slow(recording, later, progress)
+    hierarchical = slow.track(HIERARCHICAL, settings.hierarchical_frames)
+    baseline, notes = slow.baseline(settings.baseline_frames)
+    return SpeedFigures(
+        take=known.take.name,
+        cameras=f"{len(recording.cameras)} x {named(recording.cameras[0].size)}",
+        frames=len(recording.frames),
+        all_told=all_told,
+        stages={**stages, KEPT: all_told - sum(stages.values())},
+        threads={1: float(one.seconds.mean()), 2: float(two.seconds.mean())},
+        same_bits=same_bits(one, two),
+        hierarchical=float(hierarchical.seconds.mean()),
+        baseline=float(baseline.seconds.mean()) if baseline else None,
+        baseline_evaluations=float(baseline.evaluations.mean()) if baseline else None,
+        notes=notes,
+    )
+
+
+def same_bits(one: Track, other: Track) -> bool:
+    """Whether two tracks of the same frames came to the same, to the last bit."""
+    kept = ("pose", "points", "xor_px", "iou", "limb_residual", "confidence", "lost")
+    return all(
+        getattr(one.motion, name).tobytes() == getattr(other.motion, name).tobytes()
+        for name in kept
+    )
+
+
+def threaded(count: int) -> MakeEvaluator:
+    """Native evaluators with ``count`` threads."""
+
+    def make(body: Body, cameras: tuple[Camera, ...], level: int = 0) -> Evaluator:
+        return NativeEvaluator(body, cameras, level, threads=count)
+
+    return make
+
+
+class _Slow:
+    """Trackers that take long, on some frames from a known pose on."""
+
+    def __init__(self, recording: Recording, start: Beginning, progress: Progress):
+        self._recording, self._start, self._progress = recording, start, progress
+
+    def track(
+        self, variant: Variant, count: int, make_evaluator: MakeEvaluator | None = None
+    ) -> Track:
+        later = [frame for frame in self._recording.frames if frame >= self._start.frame]
+        recording = replace(self._recording, frames=tuple(later[:count]))
+        return tracked(recording, self._start, variant, self._progress.advance, make_evaluator)
+
+    def baseline(self, count: int) -> tuple[Track | None, tuple[str, ...]]:
+        """The baseline's track and notes."""
+        try:
+            return self.track(BASELINE, count, _paper), ()
+        except MocapError as error:
+            note = f"no baseline by OpenGL as in the paper: {error}"
+            self._progress.note(note)
+            return None, (note,)
+
+
+def _paper(body: Body, cameras: tuple[Camera, ...], level: int = 0) -> Evaluator:
+    return PaperEvaluator(body, cameras, full_level(body))
+
+
+def _stages(
+    take: Take, recording: Recording, start: Beginning, advance: Advance
+) -> dict[str, float]:
+    """Seconds per frame of all stages but the last."""
+    watch = Stopwatch()
+    views = open_views(take)
+    views, _ = views.reduced_and_seen(initial_frames(take, views.frames))
+    read = watch.timed(READ, views.silhouettes)
+    make = with_level_for(start.pose, _timed_evaluators(watch))
+    tracker = _timed_tracker(DEFAULT.make(start.body, recording.cameras, make), watch)
+    seconds = 0.0
+    for found in track(tracker, start.pose, ((f, read(f)) for f in recording.frames)):
+        seconds += found.seconds
+        advance(found.frame)
+    inside = sum(watch.seconds.values()) - watch.seconds[READ]
+    watch.seconds[SCORES] = seconds - inside
+    return {stage: watch.seconds[stage] / len(recording.frames) for stage in STAGES[:-1]}
+
+
+def _timed_tracker(tracker: Any, watch: Stopwatch) -> Tracker:
+    """``tracker``, told apart by stages as far as it has them."""
+    if hasattr(tracker, "descent"):
+        tracker.descent = watch.watched(tracker.descent, {"run": EQUATIONS})
+    return watch.watched(tracker, {"fit": PREPARED})
+
+
+def _timed_evaluators(watch: Stopwatch) -> MakeEvaluator:
+    """What fits draw with, told apart by what is asked of it."""
+
+    def make(body: Body, cameras: tuple[Camera, ...], level: int = 0) -> Evaluator:
+        inner = native_choice()(body, cameras, level)
+        timed = watch.watched(inner, {"outline": OUTLINES, "masked": LIMBS})
+        whole, limbs = (watch.timed(stage, inner.energies) for stage in (JUDGED, LIMBS))
+
+        def energies(weights, poses: np.ndarray, segments: Sequence[int] | None = None):
+            return (whole if segments is None else limbs)(weights, poses, segments)
+
+        timed.energies = energies
+        return timed
+
+    return make
+
+
+class _Clock(Silence):
+    """Notes when the first pose is over; the frames of the fit are told to ``advance``."""
+
+    def __init__(self, progress: Progress):
+        self._progress, self._task = progress, ""
+        self.begun = time.perf_counter()
+
+    def begin(self, task: str, total: int) -> None:
+        self._task = task
+        if task == "fit":
+            self.begun = time.perf_counter()
+
+    def advance(self, frame: int | None, figures=None) -> None:
+        if self._task == "fit":
+            self._progress.advance(frame)
+
+
+def _all_told(take: Take, frames: Sequence[int], progress: Progress) -> float:
+    """Seconds per frame of a whole fit after its first pose."""
+    clock = _Clock(progress)
+    with tempfile.TemporaryDirectory(prefix="bench_") as scratch:
+        request = FitRequest(
+            Path(scratch) / "out", Search(DEFAULT.name), frames=(frames[0], frames[-1])
+        )
+        fit(take, request, clock)
+        return (time.perf_counter() - clock.begun) / len(frames)

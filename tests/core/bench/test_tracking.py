@@ -1,0 +1,125 @@
+"""The benchmark of tracking on takes so small that it is done in seconds."""
+
+import json
+import shutil
+
+import numpy as np
+import pytest
+from known_recording import known_poses, known_recording
+from silhouette_mocap.core.bench import tracking, tracking_speed, tracking_takes, tracking_trials
+from silhouette_mocap.core.bench.disturbances.ladder import noise_ladder, torments
+from silhouette_mocap.core.bench.tracking_runs import BASELINES, DEFAULT, ablations, tracked
+from silhouette_mocap.core.bench.tracking_speed import STAGES, same_bits, threaded
+from silhouette_mocap.core.bench.tracking_takes import Beginning
+from silhouette_mocap.core.bench.tracking_trials import TrialSettings
+from silhouette_mocap.core.cli import main
+from small_take import known_start
+from synthetic import small_body
+
+HIERARCHICAL, HELD = BASELINES
+SECTIONS = ("takes", "torments", "ablation", "noise_ladder", "number_of_cameras", "frame_rate")
+
+
+def short(frames):
+    recording = known_recording()
+    return type(recording)(**{**vars(recording), "frames": recording.frames[frames]})
+
+
+def start_at(frame):
+    return Beginning(small_body("sixteen_segment"), known_poses()[frame], frame)
+
+
+@pytest.mark.parametrize("variant", [DEFAULT, HIERARCHICAL], ids=lambda variant: variant.name)
+def test_one_and_two_threads_find_the_same_bits(variant):
+    recording, start = short(slice(0, 3)), start_at(0)
+    one, two, again = (
+        tracked(recording, start, variant, lambda frame: None, threaded(count))
+        for count in (1, 2, 2)
+    )
+    assert same_bits(one, two) and same_bits(two, again)
+    # of a pixel of 33 mm, on silhouettes without noise
+    assert one.score.absolute.mean < 33
+    two.motion.pose[-1, -1] += 1e-15
+    assert not same_bits(one, two)
+
+
+def test_a_take_is_tracked_forward_and_backward_from_its_initial_pose():
+    order = []
+    found = tracked(short(slice(2, 7)), start_at(4), DEFAULT, order.append)
+    assert order == [4, 5, 6, 3, 2]
+    assert found.motion.frames.tolist() == [2, 3, 4, 5, 6]
+    assert found.errors.shape == (5, 14) and found.score.absolute.mean < 33
+
+
+def test_to_hold_the_first_pose_is_as_wrong_as_the_performer_moves():
+    found = tracked(short(slice(0, 5)), start_at(0), HELD, lambda frame: None)
+    points = known_recording().truth.points[:5]
+    moved = 1000 * np.linalg.norm(points - points[0], axis=2)
+    assert found.errors == pytest.approx(moved)
+
+
+@pytest.fixture
+def few_trials(monkeypatch, quick_start):
+    """Little noise, nothing that takes long, no OpenGL, and the first pose known."""
+    monkeypatch.setattr(tracking_takes, "initialised", known_start)
+    monkeypatch.setattr(tracking_speed, "_paper", threaded(1))
+    monkeypatch.setattr(tracking_speed, "BASELINE", HELD)
+    monkeypatch.setattr(tracking_speed, "HIERARCHICAL", HELD)
+    kinds = ("erosion", "calibration, angle")
+    monkeypatch.setattr(
+        tracking_trials,
+        "noise_ladder",
+        lambda *given: [rung for rung in noise_ladder(*given) if rung.kind in kinds],
+    )
+    monkeypatch.setattr(tracking_trials, "BASELINES", (HELD,))
+    monkeypatch.setattr(tracking_trials, "torments", lambda *given: torments(*given)[:8:3])
+    monkeypatch.setattr(tracking_trials, "ablations", lambda: ablations()[:1])
+    trials = TrialSettings(places=(0.2,), levels=(1,), camera_counts=(3,), steps=(2,))
+    settings = tracking.TrackingSettings(trials=trials, speed=tracking_speed.SpeedSettings(2, 1, 1))
+    monkeypatch.setattr(tracking, "QUICK", settings)
+
+
+def test_the_command_measures_everything_and_writes_it(few_trials, small_take, tmp_path, capsys):
+    file = tmp_path / "new" / "tracking.json"
+    words = ["bench", "tracking", str(small_take), "--quick", "--json", str(file)]
+    assert main([*words, "--out", str(tmp_path)]) == 0
+    shown = capsys.readouterr()
+    assert "track small" in shown.err and "speed of small" in shown.err
+    found = json.loads(file.read_text("utf-8"))
+    assert found["faults"] == []
+    for section in SECTIONS:
+        rows = found[section]
+        assert rows and all(row["mm_per_px"] > 20 for row in rows), section
+        if section != "torments":
+            errors = [row["absolute_mm"] for row in rows]
+            assert errors == sorted(errors, reverse=True), section
+    assert {row["name"] for row in found["takes"]} == {DEFAULT.name, HELD.name}
+    assert {row["name"] for row in found["noise_ladder"]} == {"erosion", "calibration, angle"}
+    assert [row["cameras"] for row in found["number_of_cameras"]] == [3]
+    assert found["frame_rate"][0]["frames"] == 2
+    assert found["speed"]["same_bits"] and set(found["speed"]["stages"]) == set(STAGES)
+    assert sum(found["speed"]["shares"].values()) == pytest.approx(1, abs=1e-4)
+    assert set(found["confidence"]) == {"undisturbed", "tormented", "noisy", "all of these"}
+    for name in ("tracking.md", "tracking_readme.md", "tracking_noise.svg", "tracking_sweeps.svg"):
+        assert str(tmp_path / name) in shown.out and (tmp_path / name).is_file()
+
+
+def test_a_take_without_truth_is_refused_in_one_line(small_take, tmp_path, capsys):
+    folder = tmp_path / "session" / "small"
+    shutil.copytree(small_take.parent, folder)
+    (folder / "truth.npz").unlink()
+    assert main(["bench", "tracking", str(folder / "take.toml")]) == 2
+    error = capsys.readouterr().err
+    assert "truth.npz: is missing" in error and error.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["energy", "take.toml"], "bench energy needs no take"),
+        (["tracking", "--prototypes", "x"], "belongs to bench energy"),
+    ],
+)
+def test_words_of_the_other_topic_are_refused(words, told, capsys):
+    assert main(["bench", *words]) == 2
+    assert told in capsys.readouterr().err
