@@ -7,11 +7,11 @@ from pathlib import Path
 
 import numpy as np
 
-from .energy.evaluator import Evaluator
+from .ahead import Behind, made_ahead
 from .errors import MocapError
 from .files import made_folder
 from .fitting.search import Search
-from .fitting.tracking import FrameFit, track
+from .fitting.tracking import FrameFit, History, track
 from .initialisation.first_pose import FirstFit, PoseRequest, initialised
 from .initialisation.plausibility import check_first_fit
 from .motion.overlay import Tile, overlay_picture
@@ -170,27 +170,38 @@ def _track(outcome: Outcome, request: FitRequest, progress: Progress) -> None:
     make_evaluator = with_level_for(journal.start.pose, choice)
     tracker = request.search.made(journal.start.body, views.cameras, make_evaluator)
     first, last = views.frames
-    finished = journal.poses()
+    finished = journal.fits()
     progress.begin("fit", last - first + 1 - len(finished))
     for frames in (range(start, last + 1), range(start - 1, first - 1, -1)):
-        past = [journal.start.pose, journal.start.pose, *finished[: len(frames)]]
-        left = frames[len(past) - 2 :]
-        finished = finished[len(frames) :]
+        history = History(journal.start.pose)
+        for fit in finished[: len(frames)]:
+            history.add(fit.pose, fit.scores.lumps)
+        left, finished = frames[len(finished) :], finished[len(frames) :]
         seen: dict[int, tuple[np.ndarray, Silhouettes]] = {}
-        for found in track(tracker, past[-1], _read(views, left, seen), past[-2]):
+
+        def keep(found: FrameFit, rendered: Sequence[np.ndarray], evaluator: str) -> None:
             stamps, silhouettes = seen.pop(found.frame)
-            picture = _overlay(tracker.evaluator, views, found, silhouettes)
-            journal.add(found, stamps, picture, choice.name)
-            progress.advance(found.frame, _figures(found, views))
+            picture = _overlay(rendered, views, found, silhouettes)
+            journal.add(found, stamps, picture, evaluator)
+
+        kept = None
+        with Behind() as behind:
+            for found in track(tracker, history, made_ahead(_read(views, left, seen))):
+                behind.call(keep, found, tracker.evaluator.silhouettes(found.pose), choice.name)
+                _tell(progress, kept, views)
+                kept = found
+        _tell(progress, kept, views)
 
 
 def _read(
     views: Views, frames: Sequence[int], seen: dict[int, tuple[np.ndarray, Silhouettes]]
 ) -> Iterator[tuple[int, Silhouettes]]:
-    """Numbers and silhouettes of ``frames``; with the stamps of their files in ``seen`` too."""
+    """Numbers and silhouettes of ``frames``, contours found; stamps of their files in ``seen`` too."""
     for frame in frames:
         stamps = views.stamps(frame)
         silhouettes = views.silhouettes(frame)
+        for silhouette in silhouettes:
+            _ = silhouette.contour
         seen[frame] = (stamps, silhouettes)
         yield frame, silhouettes
 
@@ -224,20 +235,24 @@ def _first_fit(take: Take, views: Views, seen: tuple[Silhouettes, ...], choice: 
     return replace(first, notes=(*first.notes, *notes))
 
 
-def _figures(found: FrameFit, views: Views) -> FrameFigures:
-    names = [camera.name for camera in views.cameras]
-    scores = found.scores
-    return FrameFigures(
-        seconds=found.seconds,
-        evaluations=found.tally.evaluated,
+def _tell(progress: Progress, kept: FrameFit | None, views: Views) -> None:
+    """Tells of a frame that has been kept."""
+    if kept is None:
+        return
+    names, scores = [camera.name for camera in views.cameras], kept.scores
+    figures = FrameFigures(
+        seconds=kept.seconds,
+        evaluations=kept.tally.evaluated,
         iou=dict(zip(names, scores.iou.tolist(), strict=True)),
         xor_px=dict(zip(names, scores.xor_px.tolist(), strict=True)),
         lost=scores.lost,
     )
+    progress.advance(kept.frame, figures)
 
 
-def _overlay(evaluator: Evaluator, views: Views, found: FrameFit, seen: Silhouettes) -> np.ndarray:
-    rendered = evaluator.silhouettes(found.pose)
+def _overlay(
+    rendered: Sequence[np.ndarray], views: Views, found: FrameFit, seen: Silhouettes
+) -> np.ndarray:
     tiles = [
         Tile(f"{view.camera.name}  IoU {iou:.2f}", view.picture(found.frame), silhouette, drawn)
         for view, iou, silhouette, drawn in zip(

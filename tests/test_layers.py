@@ -9,10 +9,10 @@ import pytest
 ROOT = Path(__file__).resolve().parents[1]
 # a package of core imports only itself and earlier ones
 ORDER = (
-    "errors", "files", "toml", "plain", "progress", "geometry", "pages", "cameras", "footage",
-    "silhouettes", "body", "native", "energy", "rendering", "optimisers", "particles", "fitting",
-    "initialisation", "motion", "take", "checking", "results", "distributed", "pipeline", "bench",
-    "cli",
+    "errors", "files", "toml", "plain", "progress", "ahead", "geometry", "pages", "cameras",
+    "footage", "silhouettes", "body", "native", "energy", "rendering", "optimisers", "particles",
+    "fitting", "initialisation", "motion", "take", "checking", "results", "distributed", "pipeline",
+    "bench", "cli",
 )  # fmt: skip
 BLENDER = frozenset(("bpy", "bmesh", "mathutils", "gpu", "bl_ui", "bpy_extras", "addon_utils"))
 

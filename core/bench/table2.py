@@ -16,7 +16,7 @@ from ..body.body import Body
 from ..body.kinematics import points
 from ..cameras.camera import Camera
 from ..fitting.hierarchical import SETTINGS, HierarchicalSettings, HierarchicalTracker
-from ..fitting.tracker import PoseFit
+from ..fitting.tracker import Past, PoseFit
 from ..rendering.native import NativeEvaluator
 from .rows import coarse_level, full_level
 from .sequences import sequence
@@ -116,7 +116,7 @@ class _Track:
 
     def fit(self, silhouettes) -> None:
         begin = time.perf_counter()
-        found = self.tracker.fit(silhouettes, self.pose, self.pose)
+        found = self.tracker.fit(silhouettes, Past.still(self.pose))
         self.seconds.append(time.perf_counter() - begin)
         self.fits.append(found)
         self.pose = found.pose

@@ -138,19 +138,21 @@ def within_limits(body: Body, poses: np.ndarray) -> np.ndarray:
     poses = _checked(body, poses)
     low, high = body.dofs.limits.T
     inside = ((poses >= low - TOLERANCE) & (poses <= high + TOLERANCE)).all(axis=1)
-    for cone in _cones(body):
-        inside &= (cone.depths(poses) >= -TOLERANCE).all(axis=1)
-    return inside
+    swings = _swings(body)
+    return inside & (poses @ swings.normals.T - swings.offsets >= -TOLERANCE).all(axis=1)
 
 
 def clamped(body: Body, poses: np.ndarray) -> np.ndarray:
     """Poses (N, D) brought within the limits: each value and each swing to the nearest allowed."""
     poses = np.clip(_checked(body, poses), *body.dofs.limits.T)
-    for cone in _cones(body):
-        outside = (cone.depths(poses) < 0).any(axis=1)
-        if outside.any():
-            swings = poses[outside][:, cone.rows]
-            poses[np.ix_(outside, cone.rows)] = cone.nearest_on_outline(swings)
+    swings = _swings(body)
+    if swings.cones:
+        depths = poses @ swings.normals.T - swings.offsets
+        lowest = np.minimum.reduceat(depths, swings.starts, axis=1)
+        for index in np.flatnonzero((lowest < 0).any(axis=0)).tolist():
+            cone, outside = swings.cones[index], lowest[:, index] < 0
+            found = cone.nearest_on_outline(poses[outside][:, cone.rows])
+            poses[np.ix_(outside, cone.rows)] = found
     return poses
 
 
@@ -162,17 +164,11 @@ def inward_normals(cone: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True, eq=False)
 class _Cone:
-    """A swing's rows, its polygon's corners (K, 2) and edges (K, 2), and what lies inside."""
+    """A swing's rows, its polygon's corners (K, 2) and edges (K, 2)."""
 
     rows: list[int]
     corners: np.ndarray
     edges: np.ndarray
-    normals: np.ndarray
-    offsets: np.ndarray
-
-    def depths(self, poses: np.ndarray) -> np.ndarray:
-        """(N, K) signed distances of the swings to the lines of the edges, inside positive."""
-        return poses[:, self.rows] @ self.normals.T - self.offsets
 
     def nearest_on_outline(self, swings: np.ndarray) -> np.ndarray:
         """(N, 2) points of the polygon's outline nearest to swings (N, 2)."""
@@ -183,14 +179,31 @@ class _Cone:
         return candidates[np.arange(len(swings)), nearest]
 
 
+@dataclass(frozen=True, eq=False)
+class _Swings:
+    """All cones of a body: the signed distances of a pose (D,) to the lines of their edges, inside
+    positive, are ``normals`` (K, D) times the pose less ``offsets`` (K,); each cone's begin at its
+    one of ``starts``.
+    """
+
+    cones: tuple[_Cone, ...]
+    normals: np.ndarray
+    offsets: np.ndarray
+    starts: np.ndarray
+
+
 @lru_cache(maxsize=16)
-def _cones(body: Body) -> tuple[_Cone, ...]:
-    cones = []
+def _swings(body: Body) -> _Swings:
+    cones, normals, offsets = [], [np.zeros((0, len(body.dofs)))], [np.zeros(0)]
     for joint, corners in body.cones.items():
-        normals = inward_normals(corners)
-        edges, offsets = np.roll(corners, -1, axis=0) - corners, (normals * corners).sum(axis=1)
-        cones.append(_Cone(list(swing_rows(body, joint)), corners, edges, normals, offsets))
-    return tuple(cones)
+        rows, inward = list(swing_rows(body, joint)), inward_normals(corners)
+        cones.append(_Cone(rows, corners, np.roll(corners, -1, axis=0) - corners))
+        spread = np.zeros((len(corners), len(body.dofs)))
+        spread[:, rows] = inward
+        normals.append(spread)
+        offsets.append((inward * corners).sum(axis=1))
+    starts = np.cumsum([0, *(len(cone.corners) for cone in cones)])[:-1]
+    return _Swings(tuple(cones), np.concatenate(normals), np.concatenate(offsets), starts)
 
 
 def _checked(body: Body, poses: np.ndarray) -> np.ndarray:

@@ -19,7 +19,7 @@ from ..cameras.camera import Camera
 from ..fitting.hierarchical import SETTINGS, HierarchicalTracker
 from ..fitting.scores import frame_scores
 from ..fitting.search import Search
-from ..fitting.tracker import EvaluatorFactory, Tracker
+from ..fitting.tracker import EvaluatorFactory, Past, Tracker
 from ..initialisation.first_pose import placed
 from ..initialisation.pose_kinds import pose_of_kind
 from ..motion.overlay import JPEG_QUALITY, Tile, overlay_picture
@@ -122,7 +122,7 @@ def estimated(trial: Trial, reading_s: float) -> Estimate:
     if search.tracker != "hierarchical":
         tracker = search.made(body, cameras, make_evaluator)
         # from a pose as near as that of the frame before is
-        near = tracker.fit(trial.silhouettes, pose, pose).pose
+        near = tracker.fit(trial.silhouettes, Past.still(pose)).pose
         frame_s, _ = _timed_fit(tracker, trial.silhouettes, near)
     picture_s, picture_bytes = _timed_picture(tracker, trial, pose)
     first, last = trial.views.frames
@@ -177,7 +177,7 @@ def _timed_fit(
     predicted = pose.copy()
     predicted[0] += _NUDGE_M
     begun = time.perf_counter()
-    found = tracker.fit(silhouettes, pose, predicted).pose
+    found = tracker.fit(silhouettes, replace(Past.still(pose), predicted=predicted)).pose
     searched = time.perf_counter()
     frame_scores(tracker.evaluator, found, silhouettes)
     return searched - begun, time.perf_counter() - searched

@@ -15,20 +15,23 @@ import numpy as np
 from ..body.body import Body, Part
 from ..body.kinematics import clamped
 from ..cameras.camera import Camera
-from ..energy.evaluator import Weights
 from ..energy.weight_maps import xor_weight_maps
-from ..silhouettes.observed_contour import ObservedContour
 from ..silhouettes.silhouette import Silhouette
 from .contour_descent import Descent, DescentSettings
 from .contour_targets import ContourTargets
-from .part_search import metres_per_pixel, rest_prior
-from .tracker import EvaluatorFactory, PoseFit, Tally, shows_nobody
+from .limb_search import LimbCost, LimbSettings, better_limbs
+from .lumps import Lumps
+from .part_search import rest_prior
+from .scores import LIMB_NAMES, limb_segments, metres_at
+from .tracker import LEAST_AREA, EvaluatorFactory, Past, PoseFit, Tally
+from .view_trust import view_weights
 
-_SOUGHT = ("left_arm", "right_arm", "left_leg", "right_leg", "head")
-_APART_RAD = 0.25
-"""Of candidates that differ by less in every DOF, one is enough."""
-_ELITE = 9
-"""Poses that the next generation lies about."""
+_TRUST_CHANGED = 0.3
+"""Of a view, so that the pose is worth another descent."""
+_USUAL = 1.4
+"""Times what lumps there usually are, that are nothing to worry about."""
+_LITTLE_M2 = 0.006
+"""Lumps in all views together that raise no doubt about a limb."""
 
 
 @dataclass(frozen=True)
@@ -39,22 +42,20 @@ class ContourSettings:
         descent: how a descent goes.
         reaches_m: of a descent's first and last step.
         steps: most steps of a descent.
-        candidates: poses of each limb in a generation; 0 for none.
-        spreads_rad: standard deviations of the generations.
-        descents: of so many candidates at most that are better.
+        limbs: how limbs are sought; None for not at all.
         again: share of the reach and of the steps that these descents have.
         prior_share: energy of one standard deviation from the rest pose, as a share of the
             silhouettes' area, when ends are compared.
+        views_weighed: whether views that disagree with the others count less.
     """
 
     descent: DescentSettings = field(default_factory=DescentSettings)
     reaches_m: tuple[float, float] = (0.22, 0.06)
-    steps: int = 10
-    candidates: int = 200
-    spreads_rad: tuple[float, ...] = (1.2, 0.4, 0.15)
-    descents: int = 2
+    steps: int = 7
+    limbs: LimbSettings | None = field(default_factory=LimbSettings)
     again: float = 0.5
     prior_share: float = 1e-3
+    views_weighed: bool = True
 
 
 class ContourTracker:
@@ -78,48 +79,91 @@ class ContourTracker:
         self.settings = settings or ContourSettings()
         self.evaluator = make_evaluator(body, cameras)
         self.descent = Descent(body, self.evaluator, self.settings.descent)
-        self.sought = tuple(part for part in body.parts if part.name in _SOUGHT)
+        self.sought = [
+            (LIMB_NAMES.index(part.name) if part.role == "limb" else 0, part)
+            for part in body.parts
+            if part.role == "limb" or part.name == "head"
+        ]
 
-    def fit(
-        self, silhouettes: tuple[Silhouette, ...], last: np.ndarray, predicted: np.ndarray
-    ) -> PoseFit:
-        """The pose that explains the V silhouettes best, searched from two poses (D,).
+    def fit(self, silhouettes: tuple[Silhouette, ...], past: Past) -> PoseFit:
+        """The pose that explains the V silhouettes best.
 
         Where the views show nobody, it is the last one.
         """
-        return _FrameSearch(self, silhouettes, last, predicted).run()
+        return _FrameSearch(self, silhouettes, past).run()
 
 
 class _FrameSearch:
     """The search of one frame: its targets, its weights, and the pose so far."""
 
-    def __init__(self, tracker: ContourTracker, silhouettes: Sequence[Silhouette], last, predicted):
+    def __init__(self, tracker: ContourTracker, silhouettes: Sequence[Silhouette], past: Past):
         self.tracker, self.settings, self.body = tracker, tracker.settings, tracker.body
-        self.last, self.predicted = clamped(tracker.body, np.stack([last, predicted]))
+        self.silhouettes, self.evaluator = silhouettes, tracker.evaluator
+        self.last, self.predicted = clamped(tracker.body, np.stack([past.last, past.predicted]))
         maps = xor_weight_maps(silhouettes)
-        self.weights = tracker.evaluator.prepared(maps)
+        self.weights = self.evaluator.prepared(maps)
+        covered = [np.count_nonzero(picture) for picture in self.evaluator.silhouettes(self.last)]
+        self.shown_px = maps.constants + covered
         observed_px = int(maps.constants.sum())
-        self.shown = not shows_nobody(tracker.evaluator, self.last, observed_px)
+        self.shown = observed_px >= LEAST_AREA * sum(covered)
         self.prior_px = self.settings.prior_share * observed_px
-        self.tally = Tally()
-        root = tracker.evaluator.transforms(self.last[None])[0, 0, :, 3]
-        metres = np.array([metres_per_pixel((camera,), root) for camera in tracker.cameras])
-        spacings_px = self.settings.descent.spacing_m / metres
-        contours = [
-            ObservedContour.of(silhouette, spacing)
-            for silhouette, spacing in zip(silhouettes, spacings_px.tolist(), strict=True)
-        ]
-        self.targets = ContourTargets(tracker.body, tracker.cameras, contours, metres)
-        self.spacing_px = float(spacings_px.max())
+        self.tally, self.usual = Tally(), past.usual
+        self.metres = metres_at(self.evaluator, self.last)
+        self.trust = np.ones(len(silhouettes))
 
     def run(self) -> PoseFit:
-        starts = [self.predicted, self.last] if self.shown else []
-        ends = [self._descended(start, self.predicted, 1.0) for start in starts]
-        self._keep_best(np.stack(ends or [self.last]))
-        rng = np.random.default_rng(0)
-        for part in self.tracker.sought if self.shown and self.settings.candidates else ():
-            self._seek(part, rng)
-        return PoseFit(self.pose, self.energy, self.tally)
+        if not self.shown:
+            self._keep_best(self.last[None])
+            return PoseFit(self.pose, int(self.apart_px.sum()), self.tally)
+        self._aim()
+        self._keep_best(np.stack([self.predicted, self.last]))
+        self._trust_views()
+        self._keep_best(self._descended(self.predicted, self.predicted, 1.0)[None])
+        if self._trust_views() > _TRUST_CHANGED:
+            self._go_on_from([self.pose])
+        if self.settings.limbs is not None:
+            self._recover()
+        return PoseFit(self.pose, int(self.apart_px.sum()), self.tally)
+
+    def _aim(self) -> None:
+        """Makes the targets of the descents."""
+        spacings_px = self.settings.descent.spacing_m / self.metres
+        contours = [
+            silhouette.contour.thinned(spacing)
+            for silhouette, spacing in zip(self.silhouettes, spacings_px.tolist(), strict=True)
+        ]
+        tracker = self.tracker
+        self.targets = ContourTargets(tracker.body, tracker.cameras, contours, self.metres)
+        self.spacing_px = float(spacings_px.max())
+
+    def _trust_views(self) -> float:
+        """Trusts each view as far as the pose explains it; returns the largest change of trust."""
+        if not self.settings.views_weighed:
+            return 0.0
+        before, self.trust = self.trust, view_weights(self.apart_px, self.shown_px)
+        self.targets.shares = self.trust
+        return float(np.abs(self.trust - before).max())
+
+    def _recover(self) -> None:
+        """The other start where lumps tell that something is amiss, then each limb by itself."""
+        doubts = self._doubts()
+        if doubts.any():
+            self._keep_best(np.stack([self.pose, self._descended(self.last, self.predicted, 1.0)]))
+            doubts = self._doubts()
+        for limb, part in self.tracker.sought:
+            self._seek(part, bool(doubts[limb]))
+
+    def _doubts(self) -> np.ndarray:
+        """(5,) bool, whether there is more than usual that each of `LIMB_NAMES` may explain."""
+        lumps = Lumps.of(self.evaluator.silhouettes(self.pose), self.silhouettes, self.metres)
+        chosen = limb_segments(self.body)
+        areas = lumps.of_limbs(self.evaluator, self.pose, chosen, self.trust)
+        return areas > _USUAL * self.usual + _LITTLE_M2
+
+    def _go_on_from(self, starts: Sequence[np.ndarray]) -> None:
+        """Descends once more, from each start (D,), and keeps the best."""
+        ends = [self._descended(start, self.pose, self.settings.again) for start in starts]
+        self._keep_best(np.stack([self.pose, *ends]))
 
     def _descended(self, start: np.ndarray, expected: np.ndarray, share: float) -> np.ndarray:
         first, last = self.settings.reaches_m
@@ -127,57 +171,24 @@ class _FrameSearch:
         descent = self.tracker.descent
         return descent.run(self.targets, self.spacing_px, start, expected, reaches)
 
-    def _seek(self, part: Part, rng: np.random.Generator) -> None:
-        """Looks for a limb elsewhere, in generations that narrow about the best, while it pays."""
-        masked = self.tracker.evaluator.masked(self.weights, self.pose, part.segments)
-        poses = np.stack([self.pose, self.last, self.predicted])
-        costs = self._limb_costs(part, masked, poses)
-        for spread in self.settings.spreads_rad:
-            found = self._scattered(part, poses, spread, rng)
-            poses = np.concatenate([poses, found])
-            costs = np.concatenate([costs, self._limb_costs(part, masked, found)])
-            order = np.argsort(costs, kind="stable")
-            if order[0] == 0:
-                return
-            # the pose as it is stays first, so that others are compared with it
-            kept = [0, *(k for k in order.tolist() if 0 < costs[k] < costs[0])][:_ELITE]
-            poses, costs = poses[kept], costs[kept]
-        chosen = self._apart(part, poses)
-        ends = [self._descended(p, self.pose, self.settings.again) for p in poses[chosen]]
-        self._keep_best(np.stack([self.pose, *ends]))
+    def _seek(self, part: Part, doubted: bool) -> None:
+        """Looks for a limb elsewhere, and descends from the better places found."""
+        masked = self.evaluator.masked(self.weights, self.pose, part.segments)
 
-    def _limb_costs(self, part: Part, masked: Weights, poses: np.ndarray) -> np.ndarray:
-        """(N,) energies of poses (N, D) with the limb as in them, the rest as it is."""
-        dofs = list(part.dofs)
-        self.tally.evaluated += len(poses)
-        moved = np.repeat(self.pose[None], len(poses), axis=0)
-        moved[:, dofs] = poses[:, dofs]
-        pixels = self.tracker.evaluator.energies(masked, moved, part.segments).sum(axis=1)
-        return np.round(pixels + self.prior_px * rest_prior(self.body, moved), 6)
+        def pixels(poses: np.ndarray) -> np.ndarray:
+            return self.evaluator.energies(masked, poses, part.segments) @ self.trust
 
-    def _scattered(
-        self, part: Part, poses: np.ndarray, spread: float, rng: np.random.Generator
-    ) -> np.ndarray:
-        """(N, D) the pose as it is with the limb about where it is in ``poses``."""
-        dofs, count = list(part.dofs), self.settings.candidates
-        scattered = np.repeat(self.pose[None], count, axis=0)
-        away = spread * rng.choice([0.3, 1.0], (count, 1)) * rng.normal(size=(count, len(dofs)))
-        scattered[:, dofs] = poses[rng.integers(0, len(poses), count)][:, dofs] + away
-        return clamped(self.body, scattered)
-
-    def _apart(self, part: Part, poses: np.ndarray) -> list[int]:
-        """Indices of the first few poses (N, D) apart from each other and from the first."""
-        dofs, chosen = list(part.dofs), [0]
-        for index in range(1, len(poses)):
-            others = poses[np.ix_(chosen, dofs)]
-            if np.abs(others - poses[index, dofs]).max(axis=1).min() > _APART_RAD:
-                chosen.append(index)
-        return chosen[1 : 1 + self.settings.descents]
+        limbs = self.settings.limbs
+        assert limbs is not None
+        priors = (self.prior_px, limbs.pull_rad, self.tally)
+        cost = LimbCost(self.body, part, self.pose, self.predicted, pixels, *priors)
+        starts = np.stack([self.last, self.predicted])
+        self._go_on_from(list(better_limbs(cost, starts, limbs, doubted)))
 
     def _keep_best(self, poses: np.ndarray) -> None:
         """Goes on with whichever of the poses (N, D) has the lowest energy, rest prior and all."""
-        pixels = self.tracker.evaluator.energies(self.weights, poses).sum(axis=1)
+        pixels = self.evaluator.energies(self.weights, poses)
         self.tally.evaluated += len(poses)
-        costs = np.round(pixels + self.prior_px * rest_prior(self.body, poses), 6)
-        best = int(np.argmin(costs))
-        self.pose, self.energy = poses[best], int(pixels[best])
+        prior = self.prior_px * rest_prior(self.body, poses)
+        best = int(np.argmin(np.round(pixels @ self.trust + prior, 6)))
+        self.pose, self.apart_px = poses[best], pixels[best]

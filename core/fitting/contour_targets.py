@@ -18,8 +18,7 @@ from ..energy.evaluator import Outline
 from ..native.library import PointsRecord, TargetsRecord, check, load
 from ..silhouettes.observed_contour import ObservedContour
 
-_TERMS = 29
-_UPPER = np.triu_indices(6)
+_TERMS, _ROWS = 50, 48
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,6 +53,9 @@ class ContourTargets:
         cameras: V pinhole cameras.
         contours: V observed contours.
         metres: (V,) m that a pixel is wide where the performer stands.
+
+    Attributes:
+        shares: (V,) that the views have in the normal equations; 1 to begin with.
     """
 
     def __init__(
@@ -79,7 +81,8 @@ class ContourTargets:
             "metres": np.ascontiguousarray(metres, float),
         }
         addresses = {name: array.ctypes.data for name, array in self._arrays.items()}
-        self._record = TargetsRecord(len(cameras), **addresses)
+        self._record = TargetsRecord(len(cameras), load().sm_processor(), **addresses)
+        self.shares = np.ones(len(cameras))
 
     def terms(
         self, outlines: Sequence[Outline], transforms: np.ndarray, reach_m: float, turn_m: float
@@ -105,9 +108,9 @@ class ContourTargets:
                 self._segment_joints.ctypes.data, out.ctypes.data, scratch.ctypes.data,
             )
         )  # fmt: skip
-        squares = np.empty((*self._shape, 6, 6))
-        squares[..., _UPPER[0], _UPPER[1]] = squares[..., _UPPER[1], _UPPER[0]] = out[..., :21]
-        return ContourTerms(squares, out[..., 21:27], out[..., 27], out[..., 28])
+        out *= self.shares[:, None, None]
+        rows = out[..., :_ROWS].reshape(*self._shape, 6, 8)
+        return ContourTerms(rows[..., :6], rows[..., 6], out[..., -2], out[..., -1])
 
 
 def _starts(counts: np.ndarray) -> np.ndarray:

@@ -36,7 +36,7 @@ from ..silhouettes.silhouette import Silhouette
 from .part_search import FORBIDDEN, PartEnergy, first_steps, part_windows, rest_prior
 from .shares import shares_of
 from .torso_volume import TorsoVolume
-from .tracker import EvaluatorFactory, PoseFit, Tally, shows_nobody
+from .tracker import EvaluatorFactory, Past, PoseFit, Tally, shows_nobody
 
 _WINDOW_SIDES = {"limb": 128, "end": 64}
 
@@ -120,17 +120,15 @@ class HierarchicalTracker:
         other.settings = settings
         return other
 
-    def fit(
-        self, silhouettes: tuple[Silhouette, ...], last: np.ndarray, predicted: np.ndarray
-    ) -> PoseFit:
+    def fit(self, silhouettes: tuple[Silhouette, ...], past: Past) -> PoseFit:
         """The pose that explains the V silhouettes best, searched from two poses (D,)."""
-        return _FrameSearch(self, silhouettes, last, predicted).run()
+        return _FrameSearch(self, silhouettes, past).run()
 
 
 class _FrameSearch:
     """The search of one frame: its weights, the pose so far, and the counts."""
 
-    def __init__(self, tracker: HierarchicalTracker, silhouettes, last, predicted):
+    def __init__(self, tracker: HierarchicalTracker, silhouettes, past: Past):
         self.tracker = tracker
         self.everything = tuple(range(len(tracker.body.segment_names)))
         maps = xor_weight_maps(silhouettes)
@@ -139,7 +137,7 @@ class _FrameSearch:
         self.half_weights = tracker.half_evaluator.prepared(halved(maps))
         self.prior_px = tracker.settings.prior_share * self.observed_px
         self.tally = Tally()
-        poses = clamped(tracker.body, np.stack([last, predicted]))
+        poses = clamped(tracker.body, np.stack([past.last, past.predicted]))
         self.last, self.predicted = poses
         costs = self._costs(poses if tracker.settings.search_prediction else poses[:1])
         self.pose, self.cost = poses[int(np.argmin(costs))].copy(), float(costs.min())

@@ -1,13 +1,16 @@
 """How well a pose explains the silhouettes of a frame, view by view and limb by limb."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
 from ..body.body import POINT_NAMES, Body
 from ..energy.evaluator import Evaluator
 from ..silhouettes.silhouette import Silhouette
+from .lumps import Lumps
 from .part_search import metres_per_pixel
+from .view_trust import view_weights
 
 LIMB_NAMES = ("torso", "left_arm", "right_arm", "left_leg", "right_leg")
 _EXPLAINED_SHARE = 0.6
@@ -23,6 +26,8 @@ class FrameScores:
         contour_px: median distance from the rendered contours to the observed ones.
         limb_residual: (5,) mean distance of each of `LIMB_NAMES`' own contour to the observed one,
             px; NaN where no view shows any of it.
+        view_weights: (V,) how far each view is trusted, see `view_weights`.
+        lumps: (5,) m^2 of `Lumps` that each of `LIMB_NAMES` may explain, summed over views.
         confidence: (14,) see `point_confidence`.
         lost: whether any limb's px are explained in fewer than 60 % of the views (SPEC §8).
     """
@@ -31,6 +36,8 @@ class FrameScores:
     iou: np.ndarray
     contour_px: float
     limb_residual: np.ndarray
+    view_weights: np.ndarray
+    lumps: np.ndarray
     confidence: np.ndarray
     lost: bool
 
@@ -43,28 +50,43 @@ def frame_scores(
     xor, union = np.array(
         [_differences(s, model) for s, model in zip(silhouettes, rendered, strict=True)]
     ).T
+    weights = view_weights(xor, 2 * union - xor)
     with np.errstate(invalid="ignore", divide="ignore"):
         iou = np.where(union > 0, 1.0 - xor / union, np.nan)
-    fields = [silhouette.distances for silhouette in silhouettes]
+    views = [v for v, silhouette in enumerate(silhouettes) if silhouette.foreground.any()]
+    pairs = {v: contour_pairs(rendered[v], silhouettes[v].observed) for v in views}
+    distances = {
+        v: np.abs(silhouettes[v].distances.ravel()[pairs[v]].sum(axis=0)) / 2 for v in views
+    }
 
     def distances_of(parts: tuple[np.ndarray, ...]) -> np.ndarray:
-        views = zip(parts, rendered, fields, silhouettes, strict=True)
-        seen = [(p, m, d, s.observed) for p, m, d, s in views if s.foreground.any()]
-        return np.concatenate([contour_distances(*view) for view in seen] or [np.zeros(0)])
+        own = [distances[v][parts[v].ravel()[pairs[v]].any(axis=0)] for v in views]
+        return np.concatenate([np.zeros(0), *own])
 
-    limbs = [evaluator.silhouettes(pose, segments) for segments in limb_segments(evaluator.body)]
+    chosen = limb_segments(evaluator.body)
+    limbs = [evaluator.silhouettes(pose, segments) for segments in chosen]
     residual = np.array([_figure(np.mean, distances_of(parts)) for parts in limbs])
-    place = evaluator.transforms(pose[None])[0, 0, :, 3]
+    metres = metres_at(evaluator, pose)
+    lumps = Lumps.of(rendered, silhouettes, metres)
     return FrameScores(
         xor_px=xor,
         iou=iou,
         contour_px=_figure(np.median, distances_of(rendered)),
         limb_residual=residual,
-        confidence=point_confidence(residual * metres_per_pixel(evaluator.cameras, place)),
+        view_weights=weights,
+        lumps=lumps.of_limbs(evaluator, pose, chosen, weights),
+        confidence=point_confidence(residual * metres.mean()),
         lost=any(_is_unexplained(parts, silhouettes) for parts in limbs),
     )
 
 
+def metres_at(evaluator: Evaluator, pose: np.ndarray) -> np.ndarray:
+    """(V,) m that a pixel of each view is wide where the root is in a pose (D,)."""
+    root = evaluator.transforms(pose[None])[0, 0, :, 3]
+    return np.array([metres_per_pixel((camera,), root) for camera in evaluator.cameras])
+
+
+@lru_cache(maxsize=16)
 def limb_segments(body: Body) -> tuple[tuple[int, ...], ...]:
     """The segments of each of `LIMB_NAMES`; the torso holds all that no limb moves."""
     limbs = {part.name: part.segments for part in body.parts if part.role == "limb"}
@@ -83,6 +105,12 @@ def point_confidence(limb_residual: np.ndarray) -> np.ndarray:
     return (1.0 - np.exp(-(0.05**2) / (2.0 * spread**2)))[[limb_of(n) for n in POINT_NAMES]]
 
 
+def points_of(limb: str) -> list[int]:
+    """Indices in `POINT_NAMES` of the points that one of `LIMB_NAMES` moves."""
+    index = LIMB_NAMES.index(limb)
+    return [k for k, name in enumerate(POINT_NAMES) if limb_of(name) == index]
+
+
 def limb_of(point: str) -> int:
     """Index in `LIMB_NAMES` of the limb that moves a point of `POINT_NAMES`."""
     side, _, joint = point.partition("_")
@@ -99,21 +127,17 @@ def _differences(silhouette: Silhouette, model: np.ndarray) -> tuple[int, int]:
     return np.count_nonzero(seen ^ drawn), np.count_nonzero(seen | drawn)
 
 
-def contour_distances(
-    part: np.ndarray, model: np.ndarray, distance: np.ndarray, observed: np.ndarray
-) -> np.ndarray:
-    """(n,) px from the model's contour, as far as it belongs to ``part``, to the observed one.
+def contour_pairs(model: np.ndarray, observed: np.ndarray) -> np.ndarray:
+    """(2, n) flat indices of neighbouring pixels between which the model's contour runs.
 
-    ``distance`` holds the `Silhouette.distances` of the observed one. The model's contour
-    runs between two neighbouring pixels, one inside and one outside; there the distance is the
-    mean of theirs. The picture's edge is no contour.
+    One of them lies inside, one outside, both are observed. The picture's edge is no contour.
     """
-    found = []
-    for one, other in (np.s_[:, :-1], np.s_[:, 1:]), (np.s_[:-1], np.s_[1:]):
-        crossing = (model[one] != model[other]) & (part[one] | part[other])
-        crossing &= observed[one] & observed[other]
-        found.append(np.abs(distance[one][crossing] + distance[other][crossing]) / 2)
-    return np.concatenate(found)
+    width, found = model.shape[1], []
+    for one, other, step in (np.s_[:, :-1], np.s_[:, 1:], 1), (np.s_[:-1], np.s_[1:], width):
+        crossing = np.zeros(model.shape, bool)
+        crossing[one] = (model[one] != model[other]) & observed[one] & observed[other]
+        found.append(np.flatnonzero(crossing) + np.array([[0], [step]]))
+    return np.concatenate(found, axis=1)
 
 
 def _is_unexplained(limb: tuple[np.ndarray, ...], silhouettes: tuple[Silhouette, ...]) -> bool:

@@ -13,7 +13,8 @@ from ..silhouettes.silhouette import Silhouette
 
 EvaluatorFactory = Callable[[Body, tuple[Camera, ...]], Evaluator]
 
-_LEAST_AREA = 0.2
+LEAST_AREA = 0.2
+"""Of what a pose covers; with less foreground, nobody is shown."""
 
 
 @dataclass
@@ -55,7 +56,28 @@ def shows_nobody(evaluator: Evaluator, pose: np.ndarray, observed_px: int) -> bo
     A search would then walk the body out of the pictures, from where none leads back.
     """
     covered = sum(np.count_nonzero(picture) for picture in evaluator.silhouettes(pose))
-    return observed_px < _LEAST_AREA * covered
+    return observed_px < LEAST_AREA * covered
+
+
+@dataclass(frozen=True, eq=False)
+class Past:
+    """What a frame is searched from.
+
+    Attributes:
+        last: (D,) the pose of the frame before.
+        predicted: (D,) the pose expected now.
+        usual: (5,) `FrameScores.lumps` that the frames before had usually; infinite where there
+            were none.
+    """
+
+    last: np.ndarray
+    predicted: np.ndarray
+    usual: np.ndarray
+
+    @classmethod
+    def still(cls, pose: np.ndarray) -> "Past":
+        """Nothing but a pose (D,), that is not expected to change."""
+        return cls(pose, pose, np.full(5, np.inf))
 
 
 class Tracker(Protocol):
@@ -66,8 +88,6 @@ class Tracker(Protocol):
         """Renders the body."""
         ...
 
-    def fit(
-        self, silhouettes: tuple[Silhouette, ...], last: np.ndarray, predicted: np.ndarray
-    ) -> PoseFit:
-        """The pose that explains the V silhouettes best, searched from two poses (D,)."""
+    def fit(self, silhouettes: tuple[Silhouette, ...], past: Past) -> PoseFit:
+        """The pose that explains the V silhouettes best."""
         ...

@@ -17,7 +17,7 @@ from ..body.scaling import scaled
 from ..cameras.camera import Camera
 from ..fitting.hierarchical import FAITHFUL, HierarchicalTracker
 from ..fitting.scores import frame_scores
-from ..fitting.tracker import EvaluatorFactory, PoseFit
+from ..fitting.tracker import EvaluatorFactory, Past, PoseFit
 from ..silhouettes.silhouette import Silhouette
 from .pose_kinds import pose_of_kind
 from .standing import body_centre, row_span, standing_height
@@ -122,9 +122,9 @@ def _best_heading(
     body = tracker.body
     quick = tracker.with_settings(replace(FAITHFUL, rounds=1))
     ring = (_turned(pose, body, k * 2 * np.pi / _HEADINGS) for k in range(_HEADINGS))
-    rough = sorted((quick.fit(silhouettes, start, start) for start in ring), key=_energy)
+    rough = sorted((quick.fit(silhouettes, Past.still(start)) for start in ring), key=_energy)
     starts = [fit.pose for fit in rough[:_COMPLETE_FITS]]
-    fits = sorted((tracker.fit(silhouettes, start, start) for start in starts), key=_energy)
+    fits = sorted((tracker.fit(silhouettes, Past.still(start)) for start in starts), key=_energy)
     yaw = _yaw_dof(body)
     for kind, found in (("rough", rough), ("complete", fits)):
         shown = (f"{round(np.degrees(fit.pose[yaw])) % 360}°: {fit.energy}" for fit in found)
@@ -152,7 +152,7 @@ def _matched_extent(
         ratio = _extent_ratio(tracker, frames, pose)
         body = scaled(tracker.body, ratio)
         tracker = HierarchicalTracker(body, tracker.cameras, make_evaluator, tracker.settings)
-        pose = tracker.fit(frames[0], pose, pose).pose
+        pose = tracker.fit(frames[0], Past.still(pose)).pose
     return tracker, pose
 
 

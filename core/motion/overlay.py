@@ -6,6 +6,7 @@ Green is where both are, red where only the model is, blue where only the perfor
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 
 import cv2
 import numpy as np
@@ -17,7 +18,6 @@ BOTH, MODEL_ONLY, OBSERVED_ONLY = (60, 200, 60), (40, 40, 240), (255, 120, 30)
 JPEG_QUALITY = (cv2.IMWRITE_JPEG_QUALITY, 90)
 """With which overlay pictures are kept."""
 _LEGEND = ((BOTH, "both"), (MODEL_ONLY, "model only"), (OBSERVED_ONLY, "performer only"))
-_OPACITIES = {BOTH: 0.6, MODEL_ONLY: 0.9, OBSERVED_ONLY: 0.9}
 _LINE = (70, 70, 70)
 _STRIP_HEIGHT = 24
 _TILE_WIDTH = 480
@@ -45,27 +45,33 @@ def overlay_picture(tiles: Sequence[Tile], title: str) -> np.ndarray:
     """(H, W, 3) uint8 BGR picture of all views side by side, ``title`` on top; of even sizes."""
     columns = math.ceil(math.sqrt(len(tiles)))
     pictures = [_scaled_and_labelled(tile) for tile in tiles]
-    height = max(picture.shape[0] for picture in pictures)
-    padded = [_padded(picture, height) for picture in pictures]
-    padded += [np.zeros_like(padded[0])] * (-len(padded) % columns)
-    rows = [np.hstack(padded[i : i + columns]) for i in range(0, len(padded), columns)]
-    return _padded(np.vstack([_titled_strip(title, columns * _TILE_WIDTH), *rows]))
+    height, width = max(picture.shape[0] for picture in pictures), columns * _TILE_WIDTH
+    whole = _STRIP_HEIGHT + math.ceil(len(tiles) / columns) * height
+    canvas = np.zeros((whole + whole % 2, width + width % 2, 3), np.uint8)
+    canvas[:_STRIP_HEIGHT, :width] = _titled_strip(title, width)
+    for index, picture in enumerate(pictures):
+        top, left = _STRIP_HEIGHT + index // columns * height, index % columns * _TILE_WIDTH
+        canvas[top : top + picture.shape[0], left : left + _TILE_WIDTH] = picture
+    return canvas
 
 
 def coloured(tile: Tile) -> np.ndarray:
     """(H, W, 3) uint8 BGR footage, grey, with the two silhouettes over it; unobserved px darker."""
     grey = cv2.cvtColor(tile.footage, cv2.COLOR_BGR2GRAY)
-    picture = cv2.cvtColor(grey, cv2.COLOR_GRAY2BGR)
-    picture[~tile.silhouette.observed] //= 3
-    seen, drawn = tile.silhouette.foreground, tile.rendered
-    for where, colour in (
-        (seen & drawn, BOTH),
-        (drawn & ~seen, MODEL_ONLY),
-        (seen & ~drawn, OBSERVED_ONLY),
-    ):
-        opacity = _OPACITIES[colour]
-        picture[where] = (1 - opacity) * picture[where] + opacity * np.array(colour)
-    return picture
+    grey[~tile.silhouette.observed] //= 3
+    kinds = tile.silhouette.foreground.view(np.uint8) + 2 * tile.rendered.view(np.uint8)
+    return _shades()[kinds, grey]
+
+
+@cache
+def _shades() -> np.ndarray:
+    """(4, 256, 3) uint8 BGR of each grey, by 1 for the performer and 2 for the model."""
+    greys = np.arange(256)[:, None]
+    shades = [
+        (1 - opacity) * greys + opacity * np.array(colour)
+        for colour, opacity in ((OBSERVED_ONLY, 0.9), (MODEL_ONLY, 0.9), (BOTH, 0.6))
+    ]
+    return np.stack([np.repeat(greys, 3, axis=1), *shades]).astype(np.uint8)
 
 
 def _titled_strip(title: str, width: int) -> np.ndarray:
@@ -93,10 +99,3 @@ def _scaled_and_labelled(tile: Tile) -> np.ndarray:
     _written(picture, tile.label, 8)
     picture[0], picture[:, 0] = _LINE, _LINE
     return picture
-
-
-def _padded(picture: np.ndarray, height: int | None = None) -> np.ndarray:
-    """``picture`` with black below up to ``height``, or to even sizes."""
-    rows = picture.shape[0] % 2 if height is None else height - picture.shape[0]
-    columns = picture.shape[1] % 2 if height is None else 0
-    return np.pad(picture, ((0, rows), (0, columns), (0, 0)))

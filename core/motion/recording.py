@@ -17,7 +17,7 @@ _BLOCK = 500
 def recorded(
     fits: Sequence[FrameFit], body: Body, camera_names: Sequence[str], fps: Fraction
 ) -> Motion:
-    """The motion of ``fits`` in the order of their frames; every view fully trusted.
+    """The motion of ``fits`` in the order of their frames.
 
     Raises:
         ValueError: no fit.
@@ -39,7 +39,7 @@ def recorded(
         point_names=POINT_NAMES,
         xor_px=np.stack([s.xor_px for s in scores]),
         iou=np.stack([s.iou for s in scores]),
-        view_weights=np.ones((len(fits), len(camera_names))),
+        view_weights=np.stack([s.view_weights for s in scores]),
         limb_residual=np.stack([s.limb_residual for s in scores]),
         camera_names=tuple(camera_names),
         confidence=np.stack([s.confidence for s in scores]),

@@ -73,13 +73,12 @@ def _objects(target: str) -> list[tuple[str, str, tuple[str, ...]]]:
     """(object, source, flags) of everything that is linked."""
     paths = PATHS if "x86_64" in target else {"base": ()}
     whole: list[tuple[str, str, tuple[str, ...]]] = [
-        (f"{name}.o", f"{name}.c", ())
-        for name in ("kernel", "processor", "transforms", "weights", "contour_terms")
+        (f"{name}.o", f"{name}.c", ()) for name in ("kernel", "processor", "transforms", "weights")
     ]
     return whole + [
         (f"{name}_{path}.o", f"{name}.c", (f"-DSM_PATH={path}", *flags))
         for path, flags in paths.items()
-        for name in ("coverage", "closed", "contours", "outline", "skin", "triangles")
+        for name in ("coverage", "closed", "contours", "outline", "skin", "terms", "triangles")
     ]
 
 

@@ -189,4 +189,4 @@ static int32_t snap_checked(const sm_body *body, const sm_views *views, int32_t 
     return clean;
 }
 
-const sm_path PATH(sm_path_) = {draw, sum, snap_checked, sm_outlines};
+const sm_path PATH(sm_path_) = {draw, sum, snap_checked, sm_outlines, sm_add_terms};

@@ -112,6 +112,9 @@ typedef struct {
     /* Points on the outline of what has been drawn. */
     void (*outlines)(const sm_body *, const sm_views *, const int32_t *segments, int32_t count, double spacing,
                      sm_points *, sm_work *);
+    /* Adds what sm_contour_terms sums up. */
+    void (*add_terms)(const sm_targets *, const sm_points *, const double *transforms, const int32_t *segment_joints,
+                      int32_t joints, double *out, float *scratch);
 } sm_path;
 
 extern const sm_path sm_path_base, sm_path_v3, sm_path_v4;

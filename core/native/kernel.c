@@ -11,12 +11,12 @@ int32_t sm_abi(void) { return SM_ABI; }
 
 const char *sm_sources(void) { return SM_FINGERPRINT; }
 
-static const sm_path *path_of(const sm_views *views) {
+static const sm_path *path_of(int32_t processor) {
 #if defined(__x86_64__)
-    if (views->processor == 4) return &sm_path_v4;
-    if (views->processor == 3) return &sm_path_v3;
+    if (processor == 4) return &sm_path_v4;
+    if (processor == 3) return &sm_path_v3;
 #endif
-    return views->processor == 1 ? &sm_path_base : 0;
+    return processor == 1 ? &sm_path_base : 0;
 }
 
 /* Largest count of a segment in a table of starts, or -1 where the table is not increasing. */
@@ -243,7 +243,7 @@ static int32_t check_views(const sm_views *views) {
             views->sum_starts[v + 1] - views->sum_starts[v] != height * (width + 1))
             return SM_SIZE;
     }
-    return path_of(views) ? SM_OK : SM_PROCESSOR;
+    return path_of(views->processor) ? SM_OK : SM_PROCESSOR;
 }
 
 int32_t sm_check(const sm_body *body, const sm_views *views) {
@@ -258,7 +258,7 @@ static int32_t begin(const sm_body *body, const sm_views *views, int64_t n, cons
                      int32_t count, void *scratch, size_t bytes, sm_work *work) {
     if (n < 0 || count < 0) return SM_SIZE;
     if (!in_range(segments, count, body->segments)) return SM_INDEX;
-    if (!path_of(views)) return SM_PROCESSOR;
+    if (!path_of(views->processor)) return SM_PROCESSOR;
     if (!scratch || bytes < sm_scratch(body, views)) return SM_SCRATCH;
     sm_cut(body, views, scratch, work);
     sm_need(body, segments, count, work);
@@ -278,7 +278,7 @@ int32_t sm_energies(const sm_body *body, const sm_views *views, const sm_weights
     sm_work work;
     int32_t error = begin(body, views, n, segments, count, scratch, bytes, &work);
     if (error) return error;
-    const sm_path *path = path_of(views);
+    const sm_path *path = path_of(views->processor);
     for (int32_t v = 0; v < views->views; v++) {
         work.pictures[v].top = weights->rows[2 * v];
         work.pictures[v].bottom = weights->rows[2 * v + 1];
@@ -300,7 +300,7 @@ int32_t sm_silhouettes(const sm_body *body, const sm_views *views, const double 
     if (error) return error;
     memset(out, 0, 8 * (size_t)views->word_starts[views->views]);
     take_pose(body, views, pose, per_view, 0, &work);
-    path_of(views)->draw(body, views, segments, count, &work);
+    path_of(views->processor)->draw(body, views, segments, count, &work);
     for (int32_t v = 0; v < views->views; v++) {
         const sm_picture *picture = &work.pictures[v];
         for (int32_t k = 0; k < picture->words; k++) {
@@ -320,8 +320,8 @@ int32_t sm_outline(const sm_body *body, const sm_views *views, const double *pos
     if (error) return error;
     if (!(spacing >= 1.0 / 256.0) || out->room < 0) return SM_SIZE;
     take_pose(body, views, pose, per_view, 0, &work);
-    path_of(views)->draw(body, views, segments, count, &work);
-    path_of(views)->outlines(body, views, segments, count, spacing, out, &work);
+    path_of(views->processor)->draw(body, views, segments, count, &work);
+    path_of(views->processor)->outlines(body, views, segments, count, spacing, out, &work);
     return SM_OK;
 }
 
@@ -341,7 +341,7 @@ static void bound(const sm_body *body, const sm_views *views, int32_t view, cons
     int32_t box[4] = {INT32_MAX - 255, INT32_MAX - 255, INT32_MIN, INT32_MIN}, clean = 1, any = 0;
     for (int32_t k = 0; k < count; k++) {
         int32_t n = body->vertex_starts[segments[k] + 1] - body->vertex_starts[segments[k]];
-        clean &= path_of(views)->snap(body, views, view, segments[k], work);
+        clean &= path_of(views->processor)->snap(body, views, view, segments[k], work);
         any |= n > 0;
         grow(work, n, box);
     }
@@ -364,19 +364,29 @@ int32_t sm_bounds(const sm_body *body, const sm_views *views, const double *pose
 int32_t sm_snapped(const sm_body *body, const sm_views *views, const double *pose, int32_t *out, void *scratch,
                    size_t bytes) {
     sm_work work;
-    if (!path_of(views)) return SM_PROCESSOR;
+    if (!path_of(views->processor)) return SM_PROCESSOR;
     if (!scratch || bytes < sm_scratch(body, views)) return SM_SCRATCH;
     sm_cut(body, views, scratch, &work);
     sm_pose_transforms(body, pose, 0, 0, 0, work.transforms);
     work.stride = 0;
     for (int32_t v = 0; v < views->views; v++) {
         for (int32_t s = 0; s < body->segments; s++) {
-            path_of(views)->snap(body, views, v, s, &work);
+            path_of(views->processor)->snap(body, views, v, s, &work);
             for (int32_t i = 0; i < body->vertex_starts[s + 1] - body->vertex_starts[s]; i++) {
                 *out++ = work.qx[i];
                 *out++ = work.qy[i];
             }
         }
     }
+    return SM_OK;
+}
+
+int32_t sm_contour_terms(const sm_targets *targets, const sm_points *points, const double *transforms, int32_t joints,
+                         const int32_t *segment_joints, double *out, float *scratch) {
+    if (targets->views < 1 || joints < 1 || points->starts[targets->views] > points->room) return SM_SIZE;
+    const sm_path *path = path_of(targets->processor);
+    if (!path) return SM_PROCESSOR;
+    memset(out, 0, sizeof(double) * SM_TERMS * (size_t)joints * (size_t)targets->views);
+    path->add_terms(targets, points, transforms, segment_joints, joints, out, scratch);
     return SM_OK;
 }

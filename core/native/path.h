@@ -17,6 +17,7 @@
 #define sm_posed PATH(sm_posed_)
 #define sm_find_contour PATH(sm_find_contour_)
 #define sm_outlines PATH(sm_outlines_)
+#define sm_add_terms PATH(sm_add_terms_)
 
 /* One of the views of sm_sight. */
 typedef struct {
@@ -58,6 +59,10 @@ int32_t sm_find_contour(const sm_body *, int32_t segment, const eye *, const dou
 /* Points on the outline of what has been drawn. */
 void sm_outlines(const sm_body *, const sm_views *, const int32_t *segments, int32_t count, double spacing,
                  sm_points *out, sm_work *);
+
+/* Adds what sm_contour_terms sums up. */
+void sm_add_terms(const sm_targets *, const sm_points *, const double *transforms, const int32_t *segment_joints,
+                  int32_t joints, double *out, float *scratch);
 
 /* Draws any segment, every triangle on its own, clipped: slow, the same picture, no conditions. */
 void sm_draw_triangles(const sm_body *, double near, int32_t segment, const double *a, sm_picture *);

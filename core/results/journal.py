@@ -11,7 +11,7 @@ import os
 import shutil
 import zlib
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import BinaryIO
 
@@ -282,6 +282,8 @@ def _record(dofs: int, views: int) -> np.dtype:
             ("iou", "<f8", (views,)),
             ("contour_px", "<f8"),
             ("limb_residual", "<f8", (len(LIMB_NAMES),)),
+            ("view_weights", "<f8", (views,)),
+            ("lumps", "<f8", (len(LIMB_NAMES),)),
             ("confidence", "<f8", (len(POINT_NAMES),)),
             ("lost", "?"),
             ("evaluated", "<i8"),
@@ -294,7 +296,7 @@ def _record(dofs: int, views: int) -> np.dtype:
     )
 
 
-_SCORES = ("xor_px", "iou", "contour_px", "limb_residual", "confidence", "lost")
+_SCORES = tuple(field.name for field in fields(FrameScores))
 
 
 def _packed(fit: FrameFit, stamps: np.ndarray, evaluator: str, kind: np.dtype) -> np.ndarray:

@@ -5,8 +5,6 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from .silhouette import Silhouette
-
 BLUR_PX = 0.7
 """Standard deviation that takes the pixels' steps out of the distances."""
 
@@ -27,17 +25,24 @@ class ObservedContour:
     normals: np.ndarray
 
     @classmethod
-    def of(cls, silhouette: Silhouette, spacing_px: float) -> "ObservedContour":
-        """The contour with points about ``spacing_px`` apart."""
+    def of(
+        cls, foreground: np.ndarray, observed: np.ndarray, distances: np.ndarray
+    ) -> "ObservedContour":
+        """The contour of a `Silhouette`'s pictures, a point for each pair of its pixels."""
         nowhere = np.zeros((0, 2), np.float32)
-        foreground, observed = silhouette.foreground, silhouette.observed
         if not foreground.any() or foreground.all():
             return cls(np.full(foreground.shape, np.nan, np.float32), nowhere, nowhere)
-        field = cv2.GaussianBlur(silhouette.distances, (0, 0), BLUR_PX)
+        field = cv2.GaussianBlur(distances, (0, 0), BLUR_PX)
         px, normals = _on_zero(field, _crossings(foreground, observed))
-        kept = _thinned(px, spacing_px)
-        field[~observed] = np.nan
-        return cls(field, px[kept], normals[kept])
+        if not observed.all():
+            field[~observed] = np.nan
+        return cls(field, px, normals)
+
+    def thinned(self, spacing_px: float) -> "ObservedContour":
+        """The same with one point per square of ``spacing_px``."""
+        squares = np.floor(self.px / spacing_px).astype(np.int64)
+        kept = np.sort(np.unique(squares @ [1, 1 << 32], return_index=True)[1])
+        return ObservedContour(self.field, self.px[kept], self.normals[kept])
 
 
 def _crossings(foreground: np.ndarray, observed: np.ndarray) -> np.ndarray:
@@ -47,8 +52,11 @@ def _crossings(foreground: np.ndarray, observed: np.ndarray) -> np.ndarray:
         (np.s_[:, :-1], np.s_[:, 1:], (0.5, 0.0)),
         (np.s_[:-1], np.s_[1:], (0.0, 0.5)),
     ):
-        crossing = (foreground[one] != foreground[other]) & observed[one] & observed[other]
-        found.append(np.argwhere(crossing)[:, ::-1] + shift)
+        crossing = foreground[one] != foreground[other]
+        crossing &= observed[one] & observed[other]
+        places = np.flatnonzero(crossing)
+        rows, columns = np.divmod(places, crossing.shape[1])
+        found.append(np.stack([columns + shift[0], rows + shift[1]], axis=1))
     return np.concatenate(found).astype(np.float32)
 
 
@@ -65,9 +73,3 @@ def _on_zero(field: np.ndarray, px: np.ndarray) -> tuple[np.ndarray, np.ndarray]
     length = np.maximum(np.hypot(x, y), 1e-6)
     normals = np.stack([x, y], axis=1) / length[:, None]
     return px - normals * (value / length)[:, None], normals
-
-
-def _thinned(px: np.ndarray, spacing_px: float) -> np.ndarray:
-    """Indices of one point per square of ``spacing_px``."""
-    squares = np.floor(px / spacing_px).astype(np.int64)
-    return np.sort(np.unique(squares @ [1, 1 << 32], return_index=True)[1])

@@ -6,6 +6,8 @@ from functools import cached_property
 import cv2
 import numpy as np
 
+from .observed_contour import ObservedContour
+
 
 @dataclass(frozen=True, eq=False)
 class Silhouette:
@@ -26,7 +28,16 @@ class Silhouette:
 
         The boundary runs between pixels, so no centre is nearer than half a pixel.
         """
-        inside = self.foreground.astype(np.uint8)
-        depth = cv2.distanceTransform(inside, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
-        height = cv2.distanceTransform(1 - inside, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
-        return np.where(self.foreground, 0.5 - depth, height - 0.5)
+        inside = self.foreground.view(np.uint8)
+        distances = cv2.distanceTransform(1 - inside, cv2.DIST_L2, cv2.DIST_MASK_PRECISE) - 0.5
+        x, y, width, height = cv2.boundingRect(inside)
+        # with a rim of one pixel, where the nearest ones outside lie
+        rows, columns = slice(max(y - 1, 0), y + height + 1), slice(max(x - 1, 0), x + width + 1)
+        depths = cv2.distanceTransform(inside[rows, columns], cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
+        np.subtract(0.5, depths, out=distances[rows, columns], where=self.foreground[rows, columns])
+        return distances
+
+    @cached_property
+    def contour(self) -> ObservedContour:
+        """Where the foreground ends."""
+        return ObservedContour.of(self.foreground, self.observed, self.distances)

@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 from silhouette_mocap.core.body.kinematics import within_limits
 from silhouette_mocap.core.fitting.contour import ContourSettings, ContourTracker
+from silhouette_mocap.core.fitting.limb_search import LimbSettings
+from silhouette_mocap.core.fitting.tracker import Past
 from silhouette_mocap.core.rendering.native import NativeEvaluator
 from silhouette_mocap.core.silhouettes.silhouette import Silhouette
 from synthetic import dof_values, evaluator, filmed, point_errors, small_body, small_studio
@@ -35,7 +37,7 @@ def test_a_pose_nearby_is_found_to_a_fraction_of_a_pixel(name):
     body, cameras = small_body(name), small_studio()
     truth = bent(body)
     tracker = ContourTracker(body, cameras, evaluator)
-    fit = tracker.fit(filmed(body, cameras, truth), body.rest_pose, body.rest_pose)
+    fit = tracker.fit(filmed(body, cameras, truth), Past.still(body.rest_pose))
     assert mean_error(body, fit.pose, truth) < 0.4 * PIXEL_M
     pixels = tracker.evaluator.silhouettes(fit.pose)
     differ = sum(
@@ -51,10 +53,11 @@ def test_a_limb_that_jumps_is_sought_and_found():
     truth[body.dofs.names.index("left_hip_flexion")] = 1.9
     truth[body.dofs.names.index("left_knee_flexion")] = 1.5
     seen = filmed(body, cameras, truth)
+    past = replace(Past.still(start), usual=np.zeros(5))
     ankles = []
-    for candidates in (0, ContourSettings().candidates):
-        settings = replace(ContourSettings(), candidates=candidates)
-        fit = ContourTracker(body, cameras, evaluator, settings).fit(seen, start, start)
+    for limbs in (None, LimbSettings()):
+        settings = replace(ContourSettings(), limbs=limbs)
+        fit = ContourTracker(body, cameras, evaluator, settings).fit(seen, past)
         ankles.append(point_errors(body, fit.pose, truth)["left_ankle"])
     assert ankles[1] < PIXEL_M
     assert ankles[0] > 0.5
@@ -66,7 +69,7 @@ def test_no_pose_leaves_the_limits():
     for _ in range(4):
         beyond = bent(body) + rng.normal(0, 0.3, len(body.dofs))
         beyond[body.dofs.names.index("left_knee_flexion")] = -0.4
-        fit = tracker.fit(filmed(body, cameras, beyond), body.rest_pose, body.rest_pose)
+        fit = tracker.fit(filmed(body, cameras, beyond), Past.still(body.rest_pose))
         assert within_limits(body, fit.pose[None])[0]
 
 
@@ -75,9 +78,9 @@ def test_a_limit_that_stops_one_joint_leaves_the_others_free():
     truth = dof_values(body, waist_flexion=-0.25, chest_flexion=-0.25, neck_flexion=-0.5)
     # the waist can bend back no more, so that the neck alone can follow
     start = dof_values(body, waist_flexion=-0.26, chest_flexion=-0.26, neck_flexion=0.3)
-    settings = replace(ContourSettings(), candidates=0)
+    settings = replace(ContourSettings(), limbs=None)
     tracker = ContourTracker(body, cameras, evaluator, settings)
-    fit = tracker.fit(filmed(body, cameras, truth), start, start)
+    fit = tracker.fit(filmed(body, cameras, truth), Past.still(start))
     assert point_errors(body, fit.pose, truth)["head"] < PIXEL_M
 
 
@@ -88,7 +91,7 @@ def test_a_view_that_shows_nobody_is_left_out():
     empty = np.zeros_like(seen[0].foreground)
     seen[0] = Silhouette(empty, ~empty)
     tracker = ContourTracker(body, cameras, evaluator)
-    fit = tracker.fit(tuple(seen), body.rest_pose, body.rest_pose)
+    fit = tracker.fit(tuple(seen), Past.still(body.rest_pose))
     assert mean_error(body, fit.pose, truth) < 0.6 * PIXEL_M
 
 
@@ -97,7 +100,9 @@ def test_where_nobody_is_seen_the_last_pose_stays():
     empty = np.zeros((120, 160), bool)
     seen = tuple(Silhouette(empty, ~empty) for _ in cameras)
     last, predicted = bent(body), body.rest_pose
-    fit = ContourTracker(body, cameras, evaluator).fit(seen, last, predicted)
+    fit = ContourTracker(body, cameras, evaluator).fit(
+        seen, replace(Past.still(last), predicted=predicted)
+    )
     np.testing.assert_array_equal(fit.pose, last)
 
 
@@ -109,5 +114,5 @@ def test_any_number_of_threads_finds_the_same_pose_bit_by_bit():
         tracker = ContourTracker(
             body, cameras, lambda b, c, threads=threads: NativeEvaluator(b, c, threads=threads)
         )
-        poses.append(tracker.fit(seen, body.rest_pose, body.rest_pose).pose)
+        poses.append(tracker.fit(seen, Past.still(body.rest_pose)).pose)
     np.testing.assert_array_equal(*poses)

@@ -83,7 +83,7 @@ def test_the_matrix_is_the_sum_of_the_slopes_products():
 def test_an_outline_on_its_contour_pulls_nowhere():
     body, cameras = small_body("performer"), small_studio()
     pose = body.rest_pose
-    contours = [ObservedContour.of(s, 1.0) for s in filmed(body, cameras, pose)]
+    contours = [s.contour.thinned(1.0) for s in filmed(body, cameras, pose)]
     metres = np.full(len(cameras), 0.033)
     targets = ContourTargets(body, cameras, contours, metres)
     transforms, _ = Twists(body).at(pose)
@@ -95,7 +95,7 @@ def test_an_outline_on_its_contour_pulls_nowhere():
 
 def test_views_without_contour_or_outline_say_nothing():
     body, cameras = small_body("performer"), small_studio(2)
-    contours = [ObservedContour.of(s, 1.0) for s in filmed(body, cameras, body.rest_pose)]
+    contours = [s.contour.thinned(1.0) for s in filmed(body, cameras, body.rest_pose)]
     unseen = np.full_like(contours[0].field, np.nan)
     nothing = ObservedContour(unseen, *(np.zeros((0, 2), np.float32),) * 2)
     outlines = evaluator(body, cameras).outline(body.rest_pose)
@@ -112,7 +112,7 @@ def test_views_without_contour_or_outline_say_nothing():
 
 def test_what_was_not_observed_draws_no_point_of_the_outline():
     body, cameras = small_body("performer"), small_studio(1)
-    contour = ObservedContour.of(filmed(body, cameras, body.rest_pose)[0], 1.0)
+    contour = filmed(body, cameras, body.rest_pose)[0].contour
     blind = ObservedContour(
         np.full_like(contour.field, np.nan), contour.px[:1], contour.normals[:1]
     )

@@ -11,6 +11,7 @@ from silhouette_mocap.core.fitting.hierarchical import (
     HierarchicalSettings,
     HierarchicalTracker,
 )
+from silhouette_mocap.core.fitting.tracker import Past
 from synthetic import dof_values, evaluator, filmed, point_errors, small_body, small_studio
 
 # One px of the small studio is 33 mm at the performer. Six views find joints to a fraction of it on
@@ -46,7 +47,7 @@ def test_a_step_is_followed_to_a_fraction_of_a_pixel(name):
     body, cameras = small_body(name), small_studio()
     truth = dof_values(body, **STEP)
     tracker = HierarchicalTracker(body, cameras, evaluator)
-    fit = tracker.fit(filmed(body, cameras, truth), body.rest_pose, body.rest_pose)
+    fit = tracker.fit(filmed(body, cameras, truth), Past.still(body.rest_pose))
     errors = point_errors(body, fit.pose, truth)
     assert np.mean(list(errors.values())) < MEAN_TOLERANCE
     assert max(errors.values()) < LARGEST_TOLERANCE
@@ -61,7 +62,7 @@ def test_an_arm_that_jumped_is_found_by_the_grid_and_missed_without_it():
     wrists = []
     for chosen in (settings, replace(settings, grid_half_width=0.0)):
         tracker = HierarchicalTracker(body, cameras, evaluator, chosen)
-        pose = tracker.fit(silhouettes, body.rest_pose, body.rest_pose).pose
+        pose = tracker.fit(silhouettes, Past.still(body.rest_pose)).pose
         wrists.append(point_errors(body, pose, truth)["left_wrist"])
     # A jump of half a metre, found again to three px.
     assert wrists[0] < 3 * 0.033
@@ -72,7 +73,9 @@ def test_the_prediction_is_searched_as_well_as_the_last_pose():
     body, cameras = small_body("sixteen_segment"), small_studio()
     truth = dof_values(body, right_shoulder_flexion=1.4, right_elbow_flexion=0.8)
     tracker = HierarchicalTracker(body, cameras, evaluator)
-    fit = tracker.fit(filmed(body, cameras, truth), body.rest_pose, truth + 0.05)
+    fit = tracker.fit(
+        filmed(body, cameras, truth), replace(Past.still(body.rest_pose), predicted=truth + 0.05)
+    )
     assert max(point_errors(body, fit.pose, truth).values()) < LARGEST_TOLERANCE
 
 
@@ -81,7 +84,7 @@ def test_a_fit_is_never_worse_than_where_it_started():
     silhouettes = filmed(body, cameras, dof_values(body, left_hip_flexion=0.4))
     start = dof_values(body, right_shoulder_twist=0.3)
     tracker = HierarchicalTracker(body, cameras, evaluator, FAITHFUL)
-    fit = tracker.fit(silhouettes, start, start)
+    fit = tracker.fit(silhouettes, Past.still(start))
     rendered = tracker.evaluator.silhouettes(start)
     energy = sum((s.foreground ^ r).sum() for s, r in zip(silhouettes, rendered, strict=True))
     assert fit.energy < energy
@@ -102,7 +105,7 @@ def test_no_candidate_beyond_the_limits_is_rendered():
         left_shoulder_abduction=raised[1],
     )
     tracker = HierarchicalTracker(body, cameras, Counting, replace(ROBUST, rounds=1))
-    tracker.fit(filmed(body, cameras, truth), truth, truth)
+    tracker.fit(filmed(body, cameras, truth), Past.still(truth))
     poses = np.concatenate(tracker.evaluator.poses + tracker.half_evaluator.poses)
     assert len(poses) > 1000
     assert within_limits(body, poses).all()
@@ -111,7 +114,7 @@ def test_no_candidate_beyond_the_limits_is_rendered():
 def test_what_is_rendered_is_counted_and_nothing_else():
     body, cameras = small_body("sixteen_segment"), small_studio(2)
     tracker = HierarchicalTracker(body, cameras, Counting, replace(FAITHFUL, rounds=1))
-    fit = tracker.fit(filmed(body, cameras, body.rest_pose), body.rest_pose, body.rest_pose)
+    fit = tracker.fit(filmed(body, cameras, body.rest_pose), Past.still(body.rest_pose))
     rendered = sum(map(len, tracker.evaluator.poses + tracker.half_evaluator.poses))
     assert fit.tally.evaluated == rendered
 
@@ -132,7 +135,7 @@ def test_the_faithful_setting_knows_no_prediction():
     for settings, start in ((FAITHFUL, body.rest_pose), (ROBUST, truth)):
         still = replace(settings, rounds=0)
         fit = HierarchicalTracker(body, cameras, evaluator, still).fit(
-            silhouettes, body.rest_pose, truth
+            silhouettes, replace(Past.still(body.rest_pose), predicted=truth)
         )
         assert np.array_equal(fit.pose, start)
 
@@ -143,7 +146,7 @@ def test_frames_that_show_nobody_keep_the_last_pose():
     blank = tuple(replace(s, foreground=np.zeros_like(s.foreground)) for s in seen)
     tracker = HierarchicalTracker(body, cameras, evaluator)
     predicted = dof_values(body, root_x=0.3)
-    fit = tracker.fit(blank, body.rest_pose, predicted)
+    fit = tracker.fit(blank, replace(Past.still(body.rest_pose), predicted=predicted))
     assert np.array_equal(fit.pose, body.rest_pose)
     assert fit.energy == sum(p.sum() for p in tracker.evaluator.silhouettes(body.rest_pose))
 
@@ -156,7 +159,7 @@ def test_candidates_out_of_their_window_are_counted(monkeypatch):
         monkeypatch.setitem(hierarchical._WINDOW_SIDES, "limb", side)
         settings = replace(FAITHFUL, rounds=1, grid_half_width=0.6)
         tracker = HierarchicalTracker(body, cameras, evaluator, settings)
-        counts.append(tracker.fit(silhouettes, body.rest_pose, body.rest_pose).tally)
+        counts.append(tracker.fit(silhouettes, Past.still(body.rest_pose)).tally)
     assert counts[0].outside_windows == 0
     assert 0 < counts[1].outside_windows < counts[1].evaluated
 
@@ -165,5 +168,5 @@ def test_the_same_frame_gives_bit_identical_poses_twice():
     body, cameras = small_body("sixteen_segment"), small_studio(3)
     silhouettes = filmed(body, cameras, dof_values(body, left_knee_flexion=0.5))
     tracker = HierarchicalTracker(body, cameras, evaluator, replace(ROBUST, rounds=1))
-    poses = [tracker.fit(silhouettes, body.rest_pose, body.rest_pose).pose for _ in range(2)]
+    poses = [tracker.fit(silhouettes, Past.still(body.rest_pose)).pose for _ in range(2)]
     assert np.array_equal(poses[0], poses[1])

@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 from silhouette_mocap.core.fitting.scores import (
     LIMB_NAMES,
-    contour_distances,
+    contour_pairs,
     frame_scores,
     limb_segments,
 )
@@ -56,23 +56,25 @@ def test_every_segment_belongs_to_one_limb():
         assert held == list(range(len(body.segment_names)))
 
 
-def test_contour_distances_are_those_of_a_grown_square():
+def test_the_contour_of_a_grown_square_runs_round_it():
     square = np.zeros((40, 40), bool)
     square[10:30, 10:30] = True
     everywhere = np.ones_like(square)
-    distance = Silhouette(square, everywhere).distances
-    assert not contour_distances(everywhere, square, distance, everywhere).any()
+    distance = Silhouette(square, everywhere).distances.ravel()
+    assert not distance[contour_pairs(square, everywhere)].sum(axis=0).any()
     grown = np.zeros_like(square)
     grown[8:32, 8:32] = True
-    distances = contour_distances(everywhere, grown, distance, everywhere)
-    assert len(distances) == 4 * 24
+    pairs = contour_pairs(grown, everywhere)
+    assert pairs.shape == (2, 4 * 24)
+    assert (grown.ravel()[pairs].sum(axis=0) == 1).all()
+    distances = distance[pairs].sum(axis=0) / 2
     # Along the sides two px, nearer the diagonal at the corners.
     assert np.median(distances) == 2
     assert (distances <= np.hypot(2, 2)).all()
     left = np.zeros_like(square)
     left[:, :12] = True
-    assert len(contour_distances(left, grown, distance, everywhere)) == 24 + 2 * 4
-    assert len(contour_distances(everywhere, grown, distance, ~left)) == 24 + 2 * 20
+    assert left.ravel()[pairs].any(axis=0).sum() == 24 + 2 * 4
+    assert contour_pairs(grown, ~left).shape == (2, 24 + 2 * 20)
 
 
 def test_a_view_that_saw_nothing_tells_nothing_of_contours():

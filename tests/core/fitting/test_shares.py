@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from silhouette_mocap.core.fitting.hierarchical import FAITHFUL, HierarchicalTracker
 from silhouette_mocap.core.fitting.shares import shares_of
+from silhouette_mocap.core.fitting.tracker import Past
 from synthetic import dof_values, evaluator, filmed, small_body, small_studio
 
 SETTINGS = replace(FAITHFUL, rounds=2)
@@ -21,7 +22,7 @@ def fitted(settings, executor=None):
     body, cameras = small_body("sixteen_segment"), small_studio(4)
     silhouettes = filmed(body, cameras, dof_values(body, **STEP))
     tracker = HierarchicalTracker(body, cameras, evaluator, settings, executor)
-    return tracker.fit(silhouettes, body.rest_pose, body.rest_pose)
+    return tracker.fit(silhouettes, Past.still(body.rest_pose))
 
 
 @pytest.mark.parametrize("name", ["performer", "sixteen_segment"])

@@ -3,7 +3,7 @@ from types import SimpleNamespace
 import numpy as np
 from silhouette_mocap.core.fitting.hierarchical import FAITHFUL, HierarchicalTracker
 from silhouette_mocap.core.fitting.tracker import PoseFit, Tally
-from silhouette_mocap.core.fitting.tracking import track
+from silhouette_mocap.core.fitting.tracking import History, track
 from synthetic import dof_values, evaluator, filmed, point_errors, small_body, small_studio
 
 
@@ -21,7 +21,7 @@ def test_a_walk_is_tracked_frame_after_frame():
     ]
     frames = ((10 + k, filmed(body, cameras, pose)) for k, pose in enumerate(poses))
     tracker = HierarchicalTracker(body, cameras, evaluator, FAITHFUL)
-    fits = list(track(tracker, body.rest_pose, frames))
+    fits = list(track(tracker, History(body.rest_pose), frames))
     assert [fit.frame for fit in fits] == [10, 11, 12, 13, 14]
     for fit, pose in zip(fits, poses, strict=True):
         # Half a pixel of the halved pictures (66 mm) on which the faithful setting moves the torso.
@@ -35,12 +35,12 @@ def test_each_frame_starts_from_the_last_pose_and_a_damped_prediction():
     class Moving:
         evaluator = evaluator(body, cameras)
 
-        def fit(self, silhouettes, last, predicted):
-            starts.append((last[0], predicted[0]))
-            return PoseFit(last + np.eye(len(last))[0], 0, Tally())
+        def fit(self, silhouettes, past):
+            starts.append((past.last[0], past.predicted[0]))
+            return PoseFit(past.last + np.eye(len(past.last))[0], 0, Tally())
 
     frames = [(k, filmed(body, cameras, body.rest_pose)) for k in range(3)]
-    list(track(Moving(), body.rest_pose, frames))
+    list(track(Moving(), History(body.rest_pose), frames))
     assert np.allclose(starts, [(0, 0), (1, 1.7), (2, 2.7)])
 
 
@@ -54,8 +54,18 @@ def test_frames_are_read_one_at_a_time():
             yield number, filmed(body, cameras, body.rest_pose)
 
     still = SimpleNamespace(
-        evaluator=evaluator(body, cameras), fit=lambda s, last, p: PoseFit(last, 0, Tally())
+        evaluator=evaluator(body, cameras), fit=lambda s, past: PoseFit(past.last, 0, Tally())
     )
-    fits = track(still, body.rest_pose, frames())
+    fits = track(still, History(body.rest_pose), frames())
     next(fits)
     assert read == [0]
+
+
+def test_what_lumps_are_usual_is_what_a_third_of_the_frames_remembered_stay_below():
+    history = History(np.zeros(3))
+    assert np.isinf(history.past.usual).all()
+    for amount in range(100):
+        history.add(np.full(3, amount), np.full(5, float(amount)))
+    np.testing.assert_allclose(history.past.usual, 40 + 0.35 * 59)
+    np.testing.assert_allclose(history.past.last, 99)
+    np.testing.assert_allclose(history.past.predicted, 99.7)

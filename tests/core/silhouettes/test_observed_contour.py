@@ -1,5 +1,4 @@
 import numpy as np
-from silhouette_mocap.core.silhouettes.observed_contour import ObservedContour
 from silhouette_mocap.core.silhouettes.silhouette import Silhouette
 
 CENTRE, RADIUS = np.array([40.3, 30.8]), 14.2
@@ -15,7 +14,7 @@ def everywhere(mask):
 
 
 def test_points_lie_on_the_contour_and_normals_point_away():
-    contour = ObservedContour.of(Silhouette(disc(), everywhere(disc())), 1.0)
+    contour = Silhouette(disc(), everywhere(disc())).contour
     away = contour.px - CENTRE
     distances = np.linalg.norm(away, axis=1)
     assert np.abs(distances - RADIUS).max() < 0.5
@@ -25,7 +24,7 @@ def test_points_lie_on_the_contour_and_normals_point_away():
 
 
 def test_the_field_is_the_distance_to_the_contour():
-    field = ObservedContour.of(Silhouette(disc(), everywhere(disc())), 1.0).field
+    field = Silhouette(disc(), everywhere(disc())).contour.field
     y, x = np.mgrid[:64, :80]
     wanted = np.hypot(x - CENTRE[0], y - CENTRE[1]) - RADIUS
     near = np.abs(wanted) < 8
@@ -34,7 +33,7 @@ def test_the_field_is_the_distance_to_the_contour():
 
 def test_wider_spacing_leaves_fewer_points():
     counts = [
-        len(ObservedContour.of(Silhouette(disc(), everywhere(disc())), spacing).px)
+        len(Silhouette(disc(), everywhere(disc())).contour.thinned(spacing).px)
         for spacing in (1.0, 2.0, 4.0)
     ]
     around = 2 * np.pi * RADIUS
@@ -46,7 +45,7 @@ def test_wider_spacing_leaves_fewer_points():
 def test_what_was_not_observed_has_no_distance_and_no_points():
     observed = everywhere(disc())
     observed[:, 40:] = False
-    contour = ObservedContour.of(Silhouette(disc(), observed), 1.0)
+    contour = Silhouette(disc(), observed).contour
     assert np.isnan(contour.field[:, 40:]).all()
     assert not np.isnan(contour.field[:, :40]).any()
     assert contour.px[:, 0].max() < 40
@@ -56,7 +55,7 @@ def test_what_was_not_observed_has_no_distance_and_no_points():
 def test_the_edge_of_the_picture_is_no_contour():
     mask = np.zeros((40, 60), bool)
     mask[10:30, 20:] = True
-    contour = ObservedContour.of(Silhouette(mask, everywhere(mask)), 1.0)
+    contour = Silhouette(mask, everywhere(mask)).contour
     assert (np.abs(contour.normals[contour.px[:, 0] > 50, 0]) < 0.1).all()
     straight = (contour.px[:, 0] > 25) & (contour.px[:, 0] < 55)
     assert np.isin(contour.px[straight, 1].round(1), [9.5, 29.5]).all()
@@ -64,6 +63,6 @@ def test_the_edge_of_the_picture_is_no_contour():
 
 def test_nobody_and_nothing_else_have_no_contour():
     for mask in (np.zeros((20, 30), bool), np.ones((20, 30), bool)):
-        contour = ObservedContour.of(Silhouette(mask, everywhere(mask)), 1.0)
+        contour = Silhouette(mask, everywhere(mask)).contour
         assert contour.px.shape == contour.normals.shape == (0, 2)
         assert np.isnan(contour.field).all()

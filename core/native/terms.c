@@ -5,12 +5,11 @@
  * times that; so its distance along a direction g of the image changes by l = (a, X x a), a = g du/dX.
  * Robust weights are those of Geman and McClure: rho = c^2 r^2 / (c^2 + r^2), w = (c^2 / (c^2 + r^2))^2.
  */
-#include "kernel.h"
+#include "path.h"
 
 #include <math.h>
-#include <string.h>
 
-enum { SQUARES = 21, COST = 27, COUNT = 28 };
+enum { ROW = 8, COST = 6 * ROW, COUNT };
 
 /* One view: where its camera and the joints stand, and its part of the sums. */
 typedef struct {
@@ -19,22 +18,22 @@ typedef struct {
     double *out;
 } view_terms;
 
-/* Adds a residual of r px along g at a point (joint's space) seen at px. */
+/* Adds a residual of r px along g at a point (joint's space) seen at px: w l (l, r)'. */
 static void add(const view_terms *v, int32_t joint, const double *point, const double *px, const double *g, double r, double share) {
     const double *m = v->transforms + 12 * (size_t)joint, *p = v->projection;
-    double x[3], a[3], l[6], *out = v->out + SM_TERMS * (size_t)joint;
+    double x[3], a[3], row[ROW] = {0};
     for (int i = 0; i < 3; i++) x[i] = m[4 * i] * point[0] + m[4 * i + 1] * point[1] + m[4 * i + 2] * point[2] + m[4 * i + 3];
     double scale = v->metres / (p[8] * x[0] + p[9] * x[1] + p[10] * x[2] + p[11]);
-    for (int i = 0; i < 3; i++) a[i] = scale * (g[0] * (p[i] - px[0] * p[8 + i]) + g[1] * (p[4 + i] - px[1] * p[8 + i]));
-    for (int i = 0; i < 3; i++) {
-        l[i] = a[i];
-        l[3 + i] = x[(i + 1) % 3] * a[(i + 2) % 3] - x[(i + 2) % 3] * a[(i + 1) % 3];
-    }
-    r *= v->metres;
+    for (int i = 0; i < 3; i++) row[i] = a[i] = scale * (g[0] * (p[i] - px[0] * p[8 + i]) + g[1] * (p[4 + i] - px[1] * p[8 + i]));
+    row[3] = x[1] * a[2] - x[2] * a[1];
+    row[4] = x[2] * a[0] - x[0] * a[2];
+    row[5] = x[0] * a[1] - x[1] * a[0];
+    row[6] = r *= v->metres;
     double c = v->reach * v->reach, robust = c / (c + r * r), w = share * robust * robust;
-    for (int i = 0, k = 0; i < 6; i++) {
-        for (int j = i; j < 6; j++) out[k++] += w * l[i] * l[j];
-        out[SQUARES + i] += w * r * l[i];
+    double *restrict out = v->out + SM_TERMS * (size_t)joint;
+    for (int i = 0; i < 6; i++) {
+        double weighed = w * row[i];
+        for (int j = 0; j < ROW; j++) out[ROW * i + j] += weighed * row[j];
     }
     out[COST] += share * robust * r * r;
     out[COUNT] += 1.0;
@@ -111,10 +110,8 @@ static void towards_outline(const sm_targets *t, int32_t view, const sm_points *
     }
 }
 
-int32_t sm_contour_terms(const sm_targets *t, const sm_points *points, const double *transforms, int32_t joints,
-                         const int32_t *segment_joints, double *out, float *scratch) {
-    if (t->views < 1 || joints < 1 || points->starts[t->views] > points->room) return SM_SIZE;
-    memset(out, 0, sizeof(double) * SM_TERMS * (size_t)joints * (size_t)t->views);
+void sm_add_terms(const sm_targets *t, const sm_points *points, const double *transforms, const int32_t *segment_joints,
+                  int32_t joints, double *out, float *scratch) {
     for (int32_t view = 0; view < t->views; view++) {
         view_terms v = {t->projections + 12 * (size_t)view, transforms, t->metres[view], t->reach,
                         out + SM_TERMS * (size_t)joints * (size_t)view};
@@ -122,5 +119,4 @@ int32_t sm_contour_terms(const sm_targets *t, const sm_points *points, const dou
         towards_contour(t, view, points, segment_joints, &v);
         towards_outline(t, view, points, segment_joints, &v, scratch);
     }
-    return SM_OK;
 }

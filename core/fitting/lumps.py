@@ -1,0 +1,123 @@
+"""What a pose leaves unexplained once the silhouettes' edges are forgiven.
+
+Noise and a body of slightly other girth leave thin seams along the contours; a limb that is lost
+leaves lumps: where the footage shows it and the model does not, and where the model draws it and
+the footage shows nothing.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+import cv2
+import numpy as np
+
+from ..body.body import Body
+from ..energy.evaluator import Evaluator
+from ..silhouettes.silhouette import Silhouette
+
+THICK_M = 0.045
+"""Thinner differences are none."""
+_REACHED = 1.15
+"""Times a limb's length that lumps may be away from its first joint."""
+
+
+@dataclass(frozen=True, eq=False)
+class Lumps:
+    """The lumps of one pose in V views.
+
+    Attributes:
+        missing: V boolean pictures (H, W), foreground that the model leaves uncovered; None for
+            none.
+        surplus: likewise, background that the model covers.
+        metres: (V,) m that a pixel is wide where the performer stands.
+    """
+
+    missing: tuple[np.ndarray | None, ...]
+    surplus: tuple[np.ndarray | None, ...]
+    metres: np.ndarray
+
+    @classmethod
+    def of(
+        cls,
+        rendered: Sequence[np.ndarray],
+        silhouettes: Sequence[Silhouette],
+        metres: np.ndarray,
+    ) -> "Lumps":
+        """Those between what a model covers, V pictures (H, W), and the silhouettes."""
+        missing, surplus = [], []
+        for model, silhouette, metre in zip(rendered, silhouettes, metres.tolist(), strict=True):
+            uncovered = silhouette.foreground & ~model & silhouette.observed
+            missing.append(_thick(uncovered, metre))
+            surplus.append(_thick(model & ~silhouette.foreground & silhouette.observed, metre))
+        return cls(tuple(missing), tuple(surplus), metres)
+
+    def __bool__(self) -> bool:
+        return any(picture is not None for picture in (*self.missing, *self.surplus))
+
+    def of_limbs(
+        self,
+        evaluator: Evaluator,
+        pose: np.ndarray,
+        limbs: Sequence[Sequence[int]],
+        weights: np.ndarray,
+    ) -> np.ndarray:
+        """(len(limbs),) m^2 of lumps that each limb may explain, summed over views by weight.
+
+        What is missing may belong to any limb, given by its segments, that reaches there from where
+        it is in ``pose`` (D,); surplus belongs to what is drawn there. ``weights`` (V,) are those
+        of the views.
+        """
+        areas = np.zeros(len(limbs))
+        if not self:
+            return areas
+        places = evaluator.transforms(pose[None])[0, :, :, 3]
+        reaches = [first_joint_and_length(evaluator.body, tuple(limb)) for limb in limbs]
+        joints, lengths = np.array([r[0] for r in reaches]), np.array([r[1] for r in reaches])
+        for view, picture in enumerate(self.missing):
+            if picture is not None:
+                rows, columns = np.divmod(np.flatnonzero(picture), picture.shape[1])
+                roots = evaluator.cameras[view].project(places[joints])
+                apart = np.hypot(columns - roots[:, :1], rows - roots[:, 1:])
+                within = apart < (_REACHED * lengths / self.metres[view])[:, None]
+                areas += weights[view] * self.metres[view] ** 2 * within.sum(axis=1)
+        covered = [(v, np.flatnonzero(p)) for v, p in enumerate(self.surplus) if p is not None]
+        for index, segments in enumerate(limbs if covered else ()):
+            drawn = evaluator.silhouettes(pose, segments)
+            for view, pixels in covered:
+                count = np.count_nonzero(drawn[view].ravel()[pixels])
+                areas[index] += weights[view] * self.metres[view] ** 2 * count
+        return areas
+
+
+@lru_cache(maxsize=64)
+def first_joint_and_length(body: Body, segments: tuple[int, ...]) -> tuple[int, float]:
+    """The joint that carries a limb's segments, and how far away its farthest end can be, m."""
+    joints = sorted({int(joint) for joint in body.segment_joints[list(segments)]})
+    lengths = {joints[0]: 0.0}
+    for joint in joints[1:]:
+        above = lengths.get(int(body.parents[joint]), 0.0)
+        lengths[joint] = above + float(np.linalg.norm(body.offsets[joint]))
+    ends = [lengths[joint] + float(np.linalg.norm(body.tails[joint])) for joint in joints]
+    return joints[0], max(ends)
+
+
+def _thick(differing: np.ndarray, metre: float) -> np.ndarray | None:
+    """Where more than a seam differs; None where nowhere."""
+    side = max(3, round(THICK_M / metre) | 1)
+    x, y, width, height = cv2.boundingRect(differing.view(np.uint8))
+    if min(width, height) < side:
+        return None
+    kernel = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (side, side))
+    # with room for what erodes the lumps from outside
+    rows, columns = (
+        slice(max(y - side, 0), y + height + side),
+        slice(max(x - side, 0), x + width + side),
+    )
+    part = rows, columns
+    opened = cv2.morphologyEx(differing[part].view(np.uint8), cv2.MORPH_OPEN, kernel)
+    if not opened.any():
+        return None
+    thick = np.zeros_like(differing)
+    thick[part] = opened
+    return thick

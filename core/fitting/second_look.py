@@ -1,0 +1,226 @@
+"""A second look at what one pass leaves in doubt: from the other end, and the better of both.
+
+Where lumps remain that are unusual in the take, a limb may have been lost; the pose of a frame
+further on, where nothing speaks against it, leads back through the stretch the other way. So does
+a pose that the user has locked, until both passes agree. Of each frame's candidates (either pass,
+and limbs of one with the rest of the other) a path is chosen that explains the silhouettes and
+moves as people can (Viterbi), joined to what was tracked before and after.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import product
+
+import numpy as np
+
+from ..body.body import Body
+from ..body.kinematics import points
+from ..energy.weight_maps import xor_weight_maps
+from ..silhouettes.silhouette import Silhouette
+from .scores import frame_scores, points_of
+from .tracker import Tracker
+from .tracking import FrameFit, History, track
+
+AGREED_M = 0.03
+"""Two poses whose points are all nearer to each other are the same."""
+APART_M = 0.1
+"""Passes that differ by more tell of a frame that is lost, where neither explains it better."""
+_AGREEING = 2
+"""Frames in a row in which both passes have to agree."""
+_CALM = 3
+"""Frames in a row without doubt, of which the first is trusted."""
+_UNUSUAL, _LITTLE_M2 = 1.6, 0.008
+"""Lumps that raise doubt: so many times the take's usual ones, and so much more."""
+_BACK = 15
+"""Frames before a doubtful stretch that the second pass may change."""
+_BETTER = 0.005
+"""Share of the silhouettes' area that tells two poses apart."""
+_MPS = 2.0
+"""Speed, m/s, of a point that costs as much."""
+_LEAP = 10.0
+"""What a leap of any length costs, in the same unit."""
+_MIXED = 2
+"""Most limbs in which passes may differ for their poses to be mixed."""
+
+Read = Callable[[Sequence[int]], Iterator[tuple[int, tuple[Silhouette, ...]]]]
+
+
+@dataclass(frozen=True, eq=False)
+class Course:
+    """Frames in the order they were tracked, all in one direction of time.
+
+    Attributes:
+        fits: one per frame.
+        fps: frames per second.
+    """
+
+    fits: Sequence[FrameFit]
+    fps: float
+
+    def stretches(self) -> list[tuple[int, int]]:
+        """(begin, end) indices, end exclusive, that are looked at again from ``end`` backwards.
+
+        Each ends before a frame that is locked, or trusted after a doubtful stretch; it begins
+        after the locked frame before, if there is one within reach.
+        """
+        locked = np.array([fit.locked for fit in self.fits])
+        ends = {int(end) for end in np.flatnonzero(locked)}
+        doubtful = self.doubtful()
+        begins: dict[int, int] = {}
+        index = 0
+        while index < len(doubtful):
+            if not doubtful[index]:
+                index += 1
+                continue
+            begin = index
+            while index < len(doubtful) and doubtful[index : index + _CALM].any():
+                index += 1
+            if index < len(doubtful):
+                ends.add(index)
+                begins[index] = max(begin - _BACK, 0)
+        found = []
+        for end in sorted(ends):
+            before = [int(lock) + 1 for lock in np.flatnonzero(locked[:end])]
+            begin = max([begins.get(end, 0), *before])
+            if begin < end:
+                found.append((begin, end))
+        return found
+
+    def doubtful(self) -> np.ndarray:
+        """(T,) bool, whether lumps are unusual in the take."""
+        lumps = np.stack([fit.scores.lumps for fit in self.fits])
+        usual = np.quantile(lumps, 0.35, axis=0)
+        lost = np.array([fit.scores.lost for fit in self.fits])
+        locked = np.array([fit.locked for fit in self.fits])
+        return ((lumps > _UNUSUAL * usual + _LITTLE_M2).any(axis=1) | lost) & ~locked
+
+
+def looked_again(tracker: Tracker, course: Course, read: Read) -> Iterator[FrameFit]:
+    """The fits of the ``course`` that a second look changes, stretch by stretch.
+
+    ``read`` yields the number and silhouettes of frames.
+    """
+    fits = list(course.fits)
+    for begin, end in course.stretches():
+        for index, fit in _joined(tracker, fits, (begin, end), course.fps, read):
+            fits[index] = fit
+            yield fit
+
+
+def _joined(
+    tracker: Tracker,
+    fits: Sequence[FrameFit],
+    stretch: tuple[int, int],
+    fps: float,
+    read: Read,
+) -> Iterator[tuple[int, FrameFit]]:
+    """Index and fit of the frames of a stretch that change."""
+    body = tracker.evaluator.body
+    back = _passed_back(tracker, fits, stretch, read)
+    differing = [i for i, pose in back.items() if _apart(body, pose, fits[i].pose) >= AGREED_M]
+    if not differing:
+        return
+    indices = range(min(differing), max(differing) + 1)
+    candidates = [_candidates(body, fits[i].pose, back[i]) for i in indices]
+    seen = [silhouettes for _, silhouettes in read([fits[i].frame for i in indices])]
+    costs = [
+        _costs(tracker, poses, silhouettes, fits[i].scores.view_weights)
+        for i, poses, silhouettes in zip(indices, candidates, seen, strict=True)
+    ]
+    ends = [fits[i].pose for i in (indices[0] - 1, indices[-1] + 1) if 0 <= i < len(fits)]
+    path = _path(body, candidates, costs, ends if indices[0] else [None, *ends], fps)
+    for index, k, poses, cost, silhouettes in zip(
+        indices, path, candidates, costs, seen, strict=True
+    ):
+        ambiguous = abs(cost[0] - cost[1]) < 1.0 and _apart(body, poses[0], poses[1]) > APART_M
+        if k or ambiguous:
+            scores = frame_scores(tracker.evaluator, poses[k], silhouettes)
+            scores = replace(scores, lost=scores.lost or ambiguous)
+            yield index, replace(fits[index], pose=poses[k], scores=scores)
+
+
+def _passed_back(
+    tracker: Tracker, fits: Sequence[FrameFit], stretch: tuple[int, int], read: Read
+) -> dict[int, np.ndarray]:
+    """The poses (D,) that a pass from the stretch's end finds, by index, until it agrees."""
+    begin, end = stretch
+    indices = range(end - 1, begin - 1, -1)
+    passed = track(tracker, History(fits[end].pose), read([fits[i].frame for i in indices]))
+    found, agreeing = {}, 0
+    for index, fit in zip(indices, passed, strict=False):
+        found[index] = fit.pose
+        apart = _apart(tracker.evaluator.body, fit.pose, fits[index].pose)
+        agreeing = agreeing + 1 if apart < AGREED_M else 0
+        if agreeing == _AGREEING:
+            break
+    return found
+
+
+def _costs(
+    tracker: Tracker,
+    poses: np.ndarray,
+    silhouettes: tuple[Silhouette, ...],
+    view_weights: np.ndarray,
+) -> np.ndarray:
+    """(K,) energies of poses (K, D), in the share of the silhouettes' area that counts."""
+    maps = xor_weight_maps(silhouettes)
+    evaluator = tracker.evaluator
+    pixels = evaluator.energies(evaluator.prepared(maps), poses) @ view_weights
+    return pixels / max(_BETTER * float(maps.constants @ view_weights), 1.0)
+
+
+def _path(
+    body: Body,
+    candidates: Sequence[np.ndarray],
+    costs: Sequence[np.ndarray],
+    ends: Sequence[np.ndarray | None],
+    fps: float,
+) -> list[int]:
+    """Which of each frame's candidates (K, D) make the cheapest path, joined to the ends (D,)."""
+    places = [points(body, poses) for poses in candidates]
+    outer = [None if end is None else points(body, end[None]) for end in (*ends, None)[:2]]
+    total, origins = costs[0].copy(), []
+    if outer[0] is not None:
+        total += _moves(outer[0], places[0], fps)[0]
+    for before, after, cost in zip(places, places[1:], costs[1:], strict=False):
+        sums = total[:, None] + _moves(before, after, fps)
+        origins.append(sums.argmin(axis=0))
+        total = sums.min(axis=0) + cost
+    if outer[1] is not None:
+        total += _moves(places[-1], outer[1], fps)[:, 0]
+    path = [int(total.argmin())]
+    for origin in reversed(origins):
+        path.append(int(origin[path[-1]]))
+    return path[::-1]
+
+
+def _moves(before: np.ndarray, after: np.ndarray, fps: float) -> np.ndarray:
+    """(K, L) costs of going from poses with points (K, 14, 3) to those with (L, 14, 3)."""
+    speeds = np.linalg.norm(after[None] - before[:, None], axis=3) * fps
+    cost = ((speeds / _MPS) ** 2).sum(axis=2)
+    return cost / (1.0 + cost / _LEAP)
+
+
+def _apart(body: Body, pose: np.ndarray, other: np.ndarray) -> float:
+    """How far the farthest of the points of two poses (D,) are from each other, m."""
+    places = points(body, np.stack([pose, other]))
+    return float(np.linalg.norm(places[0] - places[1], axis=1).max())
+
+
+def _candidates(body: Body, pose: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """(K, D) both poses, and those with some limbs of the other where only a few differ."""
+    apart = np.linalg.norm(np.diff(points(body, np.stack([pose, other])), axis=0)[0], axis=1)
+    differing = [
+        part
+        for part in body.parts
+        if part.role == "limb" and apart[points_of(part.name)].max() >= AGREED_M
+    ]
+    found = [pose, other]
+    if len(differing) <= _MIXED:
+        for swapped in [*product((False, True), repeat=len(differing))][1:-1]:
+            mixed = pose.copy()
+            for part, takes in zip(differing, swapped, strict=True):
+                if takes:
+                    mixed[list(part.dofs)] = other[list(part.dofs)]
+            found.append(mixed)
+    return np.stack(found)
