@@ -1,25 +1,23 @@
 """From a take to a motion and its files: the whole story on one screen."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
 
-from .ahead import Behind, made_ahead
 from .errors import MocapError
 from .files import made_folder
 from .fitting.search import Search
-from .fitting.tracking import FrameFit, History, track
 from .initialisation.first_pose import FirstFit, PoseRequest, initialised
 from .initialisation.plausibility import check_first_fit
-from .motion.overlay import Tile, overlay_picture
-from .progress import FrameFigures, Progress
+from .progress import Progress
 from .rendering.choice import BEST, Choice
-from .rendering.detail import OUTLINE_PX, with_level_for
+from .rendering.detail import OUTLINE_PX
 from .results.fingerprint import Inputs, fit_inputs
 from .results.journal import SET_ASIDE, UNFINISHED, Journal, Start, set_aside
+from .results.passes import tracked
 from .results.writing import (
     MOTION,
     OVERLAY,
@@ -116,10 +114,11 @@ def fit(take: Take, request: FitRequest, progress: Progress) -> FitResult:
             return write_results(outcome, request.out, progress)
 
     try:
-        _track(outcome, request, progress)
+        tracked(outcome, request.search, progress)
+        outcome = replace(outcome, complete=True)
         result = save()
     except BaseException:
-        if len(journal):
+        if len(outcome.journal):
             save()
         raise
     result = with_overlay(outcome, result, progress)
@@ -163,49 +162,6 @@ def _begun(out: Path, start: Start, progress: Progress) -> Journal:
     return Journal.begun(out / UNFINISHED, start)
 
 
-def _track(outcome: Outcome, request: FitRequest, progress: Progress) -> None:
-    """Tracks what is not in the journal yet: from the initial pose on, then what comes before."""
-    views, journal, choice = outcome.views, outcome.journal, outcome.choice
-    start = int(journal.start.frames[0])
-    make_evaluator = with_level_for(journal.start.pose, choice)
-    tracker = request.search.made(journal.start.body, views.cameras, make_evaluator)
-    first, last = views.frames
-    finished = journal.fits()
-    progress.begin("fit", last - first + 1 - len(finished))
-    for frames in (range(start, last + 1), range(start - 1, first - 1, -1)):
-        history = History(journal.start.pose)
-        for fit in finished[: len(frames)]:
-            history.add(fit.pose, fit.scores.lumps)
-        left, finished = frames[len(finished) :], finished[len(frames) :]
-        seen: dict[int, tuple[np.ndarray, Silhouettes]] = {}
-
-        def keep(found: FrameFit, rendered: Sequence[np.ndarray], evaluator: str) -> None:
-            stamps, silhouettes = seen.pop(found.frame)
-            picture = _overlay(rendered, views, found, silhouettes)
-            journal.add(found, stamps, picture, evaluator)
-
-        kept = None
-        with Behind() as behind:
-            for found in track(tracker, history, made_ahead(_read(views, left, seen))):
-                behind.call(keep, found, tracker.evaluator.silhouettes(found.pose), choice.name)
-                _tell(progress, kept, views)
-                kept = found
-        _tell(progress, kept, views)
-
-
-def _read(
-    views: Views, frames: Sequence[int], seen: dict[int, tuple[np.ndarray, Silhouettes]]
-) -> Iterator[tuple[int, Silhouettes]]:
-    """Numbers and silhouettes of ``frames``, contours found; stamps of their files in ``seen`` too."""
-    for frame in frames:
-        stamps = views.stamps(frame)
-        silhouettes = views.silhouettes(frame)
-        for silhouette in silhouettes:
-            _ = silhouette.contour
-        seen[frame] = (stamps, silhouettes)
-        yield frame, silhouettes
-
-
 def initial_frames(take: Take, frames: tuple[int, int]) -> tuple[int, ...]:
     """Up to eight of the take's ``frames`` (first, last) that show the initial pose, in order.
 
@@ -233,30 +189,3 @@ def _first_fit(take: Take, views: Views, seen: tuple[Silhouettes, ...], choice: 
     except MocapError as error:
         raise error.about(take.path) from error
     return replace(first, notes=(*first.notes, *notes))
-
-
-def _tell(progress: Progress, kept: FrameFit | None, views: Views) -> None:
-    """Tells of a frame that has been kept."""
-    if kept is None:
-        return
-    names, scores = [camera.name for camera in views.cameras], kept.scores
-    figures = FrameFigures(
-        seconds=kept.seconds,
-        evaluations=kept.tally.evaluated,
-        iou=dict(zip(names, scores.iou.tolist(), strict=True)),
-        xor_px=dict(zip(names, scores.xor_px.tolist(), strict=True)),
-        lost=scores.lost,
-    )
-    progress.advance(kept.frame, figures)
-
-
-def _overlay(
-    rendered: Sequence[np.ndarray], views: Views, found: FrameFit, seen: Silhouettes
-) -> np.ndarray:
-    tiles = [
-        Tile(f"{view.camera.name}  IoU {iou:.2f}", view.picture(found.frame), silhouette, drawn)
-        for view, iou, silhouette, drawn in zip(
-            views.views, found.scores.iou, seen, rendered, strict=True
-        )
-    ]
-    return overlay_picture(tiles, f"frame {found.frame}")

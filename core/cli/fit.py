@@ -36,6 +36,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     add_cameras_and_frames(parser)
     parser.add_argument(
+        "--lock", type=Path, metavar="LOCKS.npz",
+        help="poses that are given: the motion goes through them (default: what the take says)",
+    )  # fmt: skip
+    parser.add_argument(
         "--export", type=format_list, metavar="LIST",
         help=f"some of {','.join(FORMATS)}, or none (default: what the take says)",
     )  # fmt: skip
@@ -49,6 +53,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace, exporter: Exporter | None) -> int:
     """Fits, exports and sums up."""
     take = taken(arguments)
+    take = replace(take, locks=arguments.lock or take.locks)
     formats = take.exports if arguments.export is None else arguments.export
     check_formats(formats, exporter)
     request = FitRequest(

@@ -95,16 +95,17 @@ class Course:
         return ((lumps > _UNUSUAL * usual + _LITTLE_M2).any(axis=1) | lost) & ~locked
 
 
-def looked_again(tracker: Tracker, course: Course, read: Read) -> Iterator[FrameFit]:
-    """The fits of the ``course`` that a second look changes, stretch by stretch.
+def looked_again(tracker: Tracker, course: Course, read: Read) -> Iterator[list[FrameFit]]:
+    """The fits that a second look changes, stretch by stretch of the ``course``.
 
     ``read`` yields the number and silhouettes of frames.
     """
     fits = list(course.fits)
-    for begin, end in course.stretches():
-        for index, fit in _joined(tracker, fits, (begin, end), course.fps, read):
+    for stretch in course.stretches():
+        changed = dict(_joined(tracker, fits, stretch, course.fps, read))
+        for index, fit in changed.items():
             fits[index] = fit
-            yield fit
+        yield list(changed.values())
 
 
 def _joined(

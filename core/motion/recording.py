@@ -44,7 +44,7 @@ def recorded(
         camera_names=tuple(camera_names),
         confidence=np.stack([s.confidence for s in scores]),
         lost=np.array([s.lost for s in scores]),
-        locked=np.zeros(len(fits), bool),
+        locked=np.array([fit.locked for fit in fits]),
     )
 
 

@@ -41,6 +41,8 @@ def fit_inputs(take: Take, views: Views, settings: dict[str, object]) -> Inputs:
     del values["cameras"]["calibration"]
     if isinstance(take.performer.body, Path):
         values["performer"]["body"] = _digest(_contents(take.performer.body))
+    if take.locks is not None:
+        values["locks"] = _digest(_contents(take.locks))
     for key in ("silhouettes", "video", "plate", "ignore"):
         if values["footage"][key]:
             values["footage"][key] = os.path.relpath(values["footage"][key], take.path.parent)

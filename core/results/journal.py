@@ -118,10 +118,15 @@ class Journal:
         return cls(folder, start)
 
     def __len__(self) -> int:
-        return self._count
+        """How many frames are finished."""
+        return len(self._records())
+
+    def keep_first(self, count: int) -> None:
+        """Forgets what was added after the first ``count`` times."""
+        self._count = min(self._count, count)
 
     def add(self, fit: FrameFit, stamps: np.ndarray, picture: np.ndarray, evaluator: str) -> None:
-        """One more finished frame.
+        """One more finished frame, or one anew, which replaces the one before.
 
         Args:
             fit: the frame.
@@ -147,12 +152,8 @@ class Journal:
         self._count += 1
 
     def fits(self) -> list[FrameFit]:
-        """The finished frames in the order they were added."""
+        """The finished frames in the order they were first added."""
         return [_unpacked(record) for record in self._records()]
-
-    def poses(self) -> np.ndarray:
-        """(n, D) their poses, in that order."""
-        return self._records()["pose"]
 
     def evaluators(self) -> list[str]:
         """The kinds of evaluators that drew them, in that order."""
@@ -180,7 +181,7 @@ class Journal:
         _remove(self.folder)
 
     def _records(self) -> np.ndarray:
-        """All finished frames.
+        """The last records of all finished frames, in the order of their first ones.
 
         Raises:
             MocapError: they are not there any more, or not as they were written.
@@ -189,7 +190,8 @@ class Journal:
         records = self._read()[: self._count]
         if len(records) < self._count or not all(map(_is_sound, records)):
             raise MocapError("was changed while the fit ran", _ANEW, file=self._file)
-        return records
+        last = {frame: index for index, frame in enumerate(records["frame"].tolist())}
+        return records[list(last.values())]
 
     def _read(self) -> np.ndarray:
         self._stream.seek(0)
@@ -286,6 +288,7 @@ def _record(dofs: int, views: int) -> np.dtype:
             ("lumps", "<f8", (len(LIMB_NAMES),)),
             ("confidence", "<f8", (len(POINT_NAMES),)),
             ("lost", "?"),
+            ("locked", "?"),
             ("evaluated", "<i8"),
             ("outside_windows", "<i8"),
             ("seconds", "<f8"),
@@ -303,7 +306,8 @@ def _packed(fit: FrameFit, stamps: np.ndarray, evaluator: str, kind: np.dtype) -
     record = np.zeros((), kind)
     for name in _SCORES:
         record[name] = getattr(fit.scores, name)
-    record["frame"], record["pose"], record["seconds"] = fit.frame, fit.pose, fit.seconds
+    for name in ("frame", "pose", "seconds", "locked"):
+        record[name] = getattr(fit, name)
     record["evaluated"] = fit.tally.evaluated
     record["outside_windows"] = fit.tally.outside_windows
     record["stamps"], record["evaluator"] = stamps, evaluator.encode("ascii")
@@ -321,4 +325,5 @@ def _unpacked(record: np.void) -> FrameFit:
         ),
         tally=Tally(int(record["evaluated"]), int(record["outside_windows"])),
         seconds=float(record["seconds"]),
+        locked=bool(record["locked"]),
     )

@@ -59,6 +59,7 @@ class Outcome:
         journal: the tracked frames.
         settings: what was asked for beside the take.
         choice: what draws.
+        complete: whether all frames were tracked, and looked at again where in doubt.
     """
 
     take: Take
@@ -66,12 +67,7 @@ class Outcome:
     journal: Journal
     settings: dict[str, object]
     choice: Choice
-
-    @property
-    def finished(self) -> bool:
-        """Whether all frames were tracked."""
-        first, last = self.views.frames
-        return len(self.journal) == last - first + 1
+    complete: bool = False
 
 
 def check_spared(take: Take, folder: Path) -> None:
@@ -116,7 +112,7 @@ def write_results(outcome: Outcome, folder: Path, progress: Progress) -> FitResu
     _tell_files(outcome, files[0], tell)
     report = {
         "take": take.name,
-        "finished": outcome.finished,
+        "finished": outcome.complete,
         "settings": {
             "take": str(take.path),
             "body": str(take.performer.body),
@@ -219,7 +215,7 @@ def _digests(folder: Path) -> dict[str, str]:
 
 def _places(outcome: Outcome, folder: Path) -> tuple[Path, ...]:
     paths = tuple(folder / name for name in (MOTION, BODY, REPORT, PAGE))
-    if outcome.finished or not paths[0].exists():
+    if outcome.complete or not paths[0].exists():
         return paths
     try:
         spared = len(read_motion(paths[0]).frames) >= len(outcome.journal)
@@ -235,13 +231,13 @@ def _partial(path: Path) -> Path:
 
 def _tell_files(outcome: Outcome, motion: Path, tell: Callable[[str], None]) -> None:
     spared = motion.name != MOTION
-    if not outcome.finished:
+    if not outcome.complete:
         beside = f", beside the {MOTION} of an earlier fit" if spared else ""
         kept = f"the {len(outcome.journal)} finished frames are kept in {motion}{beside}"
         tell(f"{kept}; --resume goes on")
-    names = [OVERLAY] * (not outcome.finished)
+    names = [OVERLAY] * (not outcome.complete)
     names += [f"{outcome.take.name}.{suffix}" for suffix in EXPORTS]
-    if outcome.finished:
+    if outcome.complete:
         for path in _places(outcome, motion.parent):
             _partial(path).unlink(missing_ok=True)
     names += [_partial(motion).name]

@@ -112,7 +112,7 @@ def _take(table: Table) -> Take:
     found = table.values.get("version", "none")
     if type(found) is not int or found != VERSION:
         table.fault(f'expected "version" = {VERSION}, got {found}', f"write version = {VERSION}")
-    table.refuse("locks", "remove the key")
+    locks = table.text("locks")
     frames = table.frames("frames")
     world, fit, export = (table.table(name) for name in ("world", "fit", "export"))
     world.allow("floor")
@@ -133,6 +133,7 @@ def _take(table: Table) -> Take:
         floor=0.0 if floor is None else floor,
         search=_search(fit),
         exports=export.words("formats", EXPORTS),
+        locks=None if locks is None else Path(locks),
     )
 
 

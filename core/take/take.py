@@ -106,6 +106,7 @@ class Take:
         floor: height of the floor, world metres.
         search: how to track.
         exports: formats that fit writes beside motion.npz, of `EXPORTS`.
+        locks: file of poses that are given, see `motion.locks`; None for none.
     """
 
     path: Path
@@ -119,3 +120,4 @@ class Take:
     floor: float
     search: Search
     exports: tuple[str, ...]
+    locks: Path | None = None

@@ -32,16 +32,17 @@ import numpy as np
 from silhouette_mocap.core import pipeline
 from silhouette_mocap.core.cli import main
 from silhouette_mocap.core.initialisation.first_pose import FirstFit
+from silhouette_mocap.core.results import passes
 
 def started(body, cameras, silhouettes, request, make_evaluator):
     return FirstFit(body, body.rest_pose, np.ones(len(cameras)), ())
 
-def pausing(*search, track=pipeline.track):
+def pausing(*search, track=passes.track):
     for found in track(*search):
         yield found
         time.sleep(1)
 
-pipeline.initialised, pipeline.track = started, pausing
+pipeline.initialised, passes.track = started, pausing
 sys.exit(main(sys.argv[1:]))
 """
 

@@ -18,6 +18,7 @@ from silhouette_mocap.core.motion.motion import read_motion
 from silhouette_mocap.core.pipeline import FitRequest, fit, initial_frames
 from silhouette_mocap.core.progress import Silence
 from silhouette_mocap.core.rendering import detail
+from silhouette_mocap.core.results import passes
 from silhouette_mocap.core.results.exporting import check_formats, export
 from silhouette_mocap.core.take import InitialPose, read_take
 
@@ -133,7 +134,7 @@ def test_frames_before_the_initial_pose_are_tracked_backwards(quick_start, small
 def test_an_interrupted_fit_keeps_the_finished_frames(
     quick_start, small_take, tmp_path, monkeypatch
 ):
-    track = pipeline.track
+    track = passes.track
 
     def interrupted(*search):
         for number, found in enumerate(track(*search)):
@@ -141,7 +142,7 @@ def test_an_interrupted_fit_keeps_the_finished_frames(
                 raise KeyboardInterrupt
             yield found
 
-    monkeypatch.setattr(pipeline, "track", interrupted)
+    monkeypatch.setattr(passes, "track", interrupted)
     progress = Notebook()
     with pytest.raises(KeyboardInterrupt):
         fit(read_take(small_take), FitRequest(tmp_path), progress)

@@ -11,7 +11,7 @@ from silhouette_mocap.core import pipeline
 from silhouette_mocap.core.motion.motion import read_motion
 from silhouette_mocap.core.pipeline import FitRequest, fit
 from silhouette_mocap.core.progress import Silence
-from silhouette_mocap.core.results import writing
+from silhouette_mocap.core.results import passes, writing
 from silhouette_mocap.core.take import read_take
 
 
@@ -37,7 +37,7 @@ def kept_frames(path) -> list[int]:
 
 def unfinished(take_file, out, count, monkeypatch, failure=KeyboardInterrupt, **request) -> Notes:
     """The notes of a fit that fails after ``count`` frames."""
-    track, notes = pipeline.track, Notes()
+    track, notes = passes.track, Notes()
 
     def failing(*search):
         for number, found in enumerate(track(*search)):
@@ -46,7 +46,7 @@ def unfinished(take_file, out, count, monkeypatch, failure=KeyboardInterrupt, **
             yield found
 
     with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
-        patch.setattr(pipeline, "track", failing)
+        patch.setattr(passes, "track", failing)
         fit(read_take(take_file), FitRequest(out, **request), notes)
     return notes
 

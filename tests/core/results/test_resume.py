@@ -13,6 +13,7 @@ from silhouette_mocap.core.fitting.search import Search
 from silhouette_mocap.core.motion.motion import read_motion, write_motion
 from silhouette_mocap.core.pipeline import FitRequest, fit
 from silhouette_mocap.core.progress import Silence
+from silhouette_mocap.core.results import passes
 from silhouette_mocap.core.results.journal import SET_ASIDE, UNFINISHED
 from silhouette_mocap.core.take import InitialPose, read_take
 
@@ -52,7 +53,7 @@ def cut_off(take_file, tmp_path, monkeypatch):
     """Fits that end after some frames, leaving nothing but what was kept at once."""
 
     def until(count, take=None, out=tmp_path / "out", **request):
-        track = pipeline.track
+        track = passes.track
         left = [count]
 
         def failing(*search):
@@ -66,7 +67,7 @@ def cut_off(take_file, tmp_path, monkeypatch):
             raise Killed
 
         with monkeypatch.context() as patch, pytest.raises(Killed):
-            patch.setattr(pipeline, "track", failing)
+            patch.setattr(passes, "track", failing)
             patch.setattr(pipeline, "write_results", killed)
             fit(take or read_take(take_file), asked(out, **request), Silence())
         return out

@@ -1,0 +1,121 @@
+"""The passes of a fit over its frames, each frame kept as soon as it is found.
+
+From the initial pose on, then what comes before it; then a second look, from the other end, at what
+these leave in doubt, and at what leads to a locked pose.
+"""
+
+from collections.abc import Iterable, Iterator, Sequence
+
+import numpy as np
+
+from ..ahead import Behind, made_ahead
+from ..fitting.search import Search
+from ..fitting.second_look import Course, looked_again
+from ..fitting.tracking import FrameFit, History, track
+from ..motion.locks import read_locks
+from ..motion.overlay import Tile, overlay_picture
+from ..progress import FrameFigures, Progress
+from ..rendering.detail import with_level_for
+from ..silhouettes.silhouette import Silhouette
+from .writing import Outcome
+
+Silhouettes = tuple[Silhouette, ...]
+"""One frame's, camera by camera."""
+
+
+def tracked(outcome: Outcome, search: Search, progress: Progress) -> None:
+    """Puts into the journal of ``outcome`` what is not in it yet.
+
+    Raises:
+        MocapError: footage or locked poses at fault.
+    """
+    passes = _Passes(outcome, search, progress)
+    passes.first()
+    passes.second()
+
+
+class _Passes:
+    """The passes of one fit."""
+
+    def __init__(self, outcome: Outcome, search: Search, progress: Progress):
+        self.views, self.journal, self.choice = outcome.views, outcome.journal, outcome.choice
+        self.progress, self.fps = progress, float(outcome.take.fps)
+        start, (first, last) = self.journal.start, self.views.frames
+        make_evaluator = with_level_for(start.pose, self.choice)
+        self.tracker = search.made(start.body, self.views.cameras, make_evaluator)
+        self.locks = read_locks(outcome.take.locks, start.body, self.views.frames)
+        origin = int(start.frames[0])
+        self.directions = range(origin, last + 1), range(origin - 1, first - 1, -1)
+        self.seen: dict[int, tuple[np.ndarray, Silhouettes]] = {}
+
+    def first(self) -> None:
+        """From the initial pose on and back, after the frames that are in the journal."""
+        total = sum(map(len, self.directions))
+        self.journal.keep_first(total)
+        finished = {fit.frame: fit for fit in self.journal.fits()}
+        self.progress.begin("fit", total - len(finished))
+        for frames in self.directions:
+            history = History(self.journal.start.pose)
+            for fit in (finished[frame] for frame in frames if frame in finished):
+                history.add(fit.pose, fit.scores.lumps, fit.locked)
+            left = [frame for frame in frames if frame not in finished]
+            self._keep(track(self.tracker, history, made_ahead(self._read(left)), self.locks))
+
+    def second(self) -> None:
+        """What the first passes leave in doubt, once more from the other end."""
+        found = {fit.frame: fit for fit in self.journal.fits()}
+        courses = [
+            Course([found[frame] for frame in frames], self.fps)
+            for frames in self.directions
+            if len(frames)
+        ]
+        self.progress.begin("second look", sum(len(course.stretches()) for course in courses))
+        for course in courses:
+            for changed in looked_again(self.tracker, course, self._read):
+                self._keep(changed, tell=False)
+                self.progress.advance(None)
+
+    def _read(self, frames: Iterable[int]) -> Iterator[tuple[int, Silhouettes]]:
+        """Numbers and silhouettes of ``frames``, their contours found."""
+        for frame in frames:
+            stamps = self.views.stamps(frame)
+            silhouettes = self.views.silhouettes(frame)
+            for silhouette in silhouettes:
+                _ = silhouette.contour
+            self.seen[frame] = (stamps, silhouettes)
+            yield frame, silhouettes
+
+    def _keep(self, fits: Iterable[FrameFit], tell: bool = True) -> None:
+        """Puts ``fits`` into the journal while the next is found, and tells of those kept."""
+        kept = None
+        with Behind() as behind:
+            for fit in fits:
+                rendered = self.tracker.evaluator.silhouettes(fit.pose)
+                behind.call(self._add, fit, rendered, self.choice.name)
+                if kept is not None and tell:
+                    self.progress.advance(kept.frame, self._figures(kept))
+                kept = fit
+        if kept is not None and tell:
+            self.progress.advance(kept.frame, self._figures(kept))
+        self.seen.clear()
+
+    def _add(self, fit: FrameFit, rendered: Sequence[np.ndarray], evaluator: str) -> None:
+        stamps, silhouettes = self.seen.pop(fit.frame)
+        tiles = [
+            Tile(f"{view.camera.name}  IoU {iou:.2f}", view.picture(fit.frame), silhouette, drawn)
+            for view, iou, silhouette, drawn in zip(
+                self.views.views, fit.scores.iou, silhouettes, rendered, strict=True
+            )
+        ]
+        picture = overlay_picture(tiles, f"frame {fit.frame}")
+        self.journal.add(fit, stamps, picture, evaluator)
+
+    def _figures(self, fit: FrameFit) -> FrameFigures:
+        names, scores = [camera.name for camera in self.views.cameras], fit.scores
+        return FrameFigures(
+            seconds=fit.seconds,
+            evaluations=fit.tally.evaluated,
+            iou=dict(zip(names, scores.iou.tolist(), strict=True)),
+            xor_px=dict(zip(names, scores.xor_px.tolist(), strict=True)),
+            lost=scores.lost,
+        )
