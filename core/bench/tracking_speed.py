@@ -22,7 +22,7 @@ from ..errors import MocapError
 from ..fitting.hierarchical import FAITHFUL, HierarchicalTracker
 from ..fitting.search import Search
 from ..fitting.tracker import Tracker
-from ..fitting.tracking import track
+from ..fitting.tracking import History, track
 from ..pipeline import FitRequest, fit, initial_frames
 from ..progress import Progress, Silence
 from ..rendering.choice import MakeEvaluator
@@ -189,7 +189,7 @@ def _stages(
     make = with_level_for(start.pose, _timed_evaluators(watch))
     tracker = _timed_tracker(DEFAULT.make(start.body, recording.cameras, make), watch)
     seconds = 0.0
-    for found in track(tracker, start.pose, ((f, read(f)) for f in recording.frames)):
+    for found in track(tracker, History(start.pose), ((f, read(f)) for f in recording.frames)):
         seconds += found.seconds
         advance(found.frame)
     inside = sum(watch.seconds.values()) - watch.seconds[READ]

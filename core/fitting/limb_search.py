@@ -101,7 +101,7 @@ def better_limbs(
         poses = np.concatenate([poses, _everywhere(cost, settings.everywhere)])
     costs = cost(poses)
     for spread in settings.spreads_rad:
-        count = settings.everywhere // 2 if doubted else settings.near
+        count = max(settings.near, settings.everywhere // 2 if doubted else 0)
         found = cost.moved(_scattered(cost.part, poses, spread, count, rng))
         poses, costs = np.concatenate([poses, found]), np.concatenate([costs, cost(found)])
         if not doubted and costs.min() >= own_cost:

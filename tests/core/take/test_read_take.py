@@ -159,7 +159,6 @@ def test_a_fault_in_a_shared_file_names_the_shared_file(folder):
         ("[cameras]", "frames = [5, 2]\n[cameras]", "0 <= first <= last"),
         ("[cameras]", "frames = [0, 1.5]\n[cameras]", "a list of 2 whole numbers"),
         ("[cameras]", 'name = "../out"\n[cameras]', "cannot name files"),
-        ("[cameras]", 'locks = "l.npz"\n[cameras]', '"locks" is not supported yet'),
         ("[cameras]", "world = 3\n[cameras]", 'a table for "world", got a whole number (3)'),
         ("[footage]", "offsets = { a = 0.5 }\n[footage]", '"cameras.offsets" is not supported yet'),
         ("[footage]", "adjust = { a = { scal = 2 } }\n[footage]", 'did you mean "scale"'),
