@@ -27,6 +27,8 @@ def motion_of(iou, **changes) -> Motion:
         "confidence": np.ones((frames, 14)),
         "lost": np.zeros(frames, bool),
         "locked": np.zeros(frames, bool),
+        "confidence_raw": np.ones((frames, 14)),
+        "keyed": np.ones((frames, 1), bool),
     }
     return Motion(**{**values, **changes})
 

@@ -3,16 +3,19 @@
 A joint's motion turns its frame, which in the rest pose is parallel to the world. The bone's own
 frame B is turned against that by the rest pose, so the bone turns by the conjugate B^T R B with R
 the joint's rotation relative to its parent. Moves of a joint are told in the bone's frame too.
+
+Where all frames are keys, they are joined by straight lines; where only some are, by Bézier curves
+that go through them as core's `curves` say, with handles a third of the way to the next key.
 """
 
 from dataclasses import dataclass
 
 import bpy
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from ...core.body.body import Body, DofKind
-from ...core.body.kinematics import joint_transforms
+from ...core.body.kinematics import joint_motions
+from ...core.motion.curves import quaternions, slopes
 from .armature import bone_names
 
 
@@ -24,11 +27,13 @@ class Keys:
         frames: (T,) frames of the scene, whole or not.
         poses: (T, D) poses of the body.
         locked: (T,) bool; these become extremes, the others plain keyframes.
+        keyed: (T, J) bool, the frames that are keys, joint by joint; the first and the last are.
     """
 
     frames: np.ndarray
     poses: np.ndarray
     locked: np.ndarray
+    keyed: np.ndarray
 
 
 def add_action(armature: bpy.types.Object, body: Body, name: str, keys: Keys) -> bpy.types.Action:
@@ -45,57 +50,49 @@ def add_action(armature: bpy.types.Object, body: Body, name: str, keys: Keys) ->
     animation.action, animation.action_slot = action, slot
     strip = action.layers.new("Layer").strips.new(type="KEYFRAME")
     bag = strip.channelbag(slot, ensure=True)
-    moves = _moves(body, keys.poses)
+    moves = joint_motions(body, keys.poses)
     moved = body.dofs.joints[body.dofs.kinds == DofKind.TRANSLATION]
     for joint, bone in enumerate(bone_names(body)):
         rest = np.array(armature.data.bones[bone].matrix_local)[:3, :3]
         group = bag.groups.new(bone)
         path = f'pose.bones["{bpy.utils.escape_identifier(bone)}"]'
-        curves = {"rotation_quaternion": _quaternions(rest.T @ moves[:, joint, :, :3] @ rest)}
+        curves = {"rotation_quaternion": quaternions(rest.T @ moves[:, joint, :, :3] @ rest)}
         if joint in moved:
             curves["location"] = moves[:, joint, :, 3] @ rest
         for channel, values in curves.items():
-            for index, column in enumerate(values.T):
+            slope = slopes(values, keys.frames)
+            for index in range(values.shape[1]):
                 curve = bag.fcurves.new(f"{path}.{channel}", index=index)
                 curve.group = group
-                _key(curve, keys, column)
+                _key(curve, keys, keys.keyed[:, joint], values[:, index], slope[:, index])
     return action
 
 
-def _moves(body: Body, poses: np.ndarray) -> np.ndarray:
-    """(T, J, 3, 4) motion of every joint in its own space, on top of its offset."""
-    world = joint_transforms(body, poses)
-    moves = np.empty((len(poses), len(body.parents), 3, 4))
-    for joint, parent in enumerate(body.parents):
-        rotation, position = world[:, joint, :3, :3], world[:, joint, :3, 3]
-        if parent >= 0:
-            upright = world[:, parent, :3, :3].transpose(0, 2, 1)
-            position = position - world[:, parent, :3, 3]
-            position = np.einsum("tij,tj->ti", upright, position)
-            rotation = upright @ rotation
-        moves[:, joint, :, :3] = rotation
-        moves[:, joint, :, 3] = position - body.offsets[joint]
-    return moves
-
-
-def _quaternions(rotations: np.ndarray) -> np.ndarray:
-    """(T, 4) quaternions w x y z of (T, 3, 3), each on the side of the sphere of the one before."""
-    quaternions = Rotation.from_matrix(rotations).as_quat()[:, [3, 0, 1, 2]]
-    quaternions[0] *= np.copysign(1.0, quaternions[0, 0])
-    turned = np.einsum("ti,ti->t", quaternions[1:], quaternions[:-1]) < 0
-    quaternions[1:][np.cumsum(turned) % 2 == 1] *= -1
-    return quaternions
-
-
-def _key(curve: bpy.types.FCurve, keys: Keys, values: np.ndarray) -> None:
-    points = curve.keyframe_points
-    points.add(len(values))
-    points.foreach_set("co", np.column_stack([keys.frames, values]).ravel())
-    interpolation = _number(bpy.types.Keyframe, "interpolation", "LINEAR")
-    points.foreach_set("interpolation", np.full(len(values), interpolation, np.int32))
+def _key(curve: bpy.types.FCurve, keys: Keys, keyed: np.ndarray, values, slope) -> None:
+    """Adds the keys of one component (T,), joined by lines or through their slopes (T,)."""
+    frames, points = keys.frames[keyed], curve.keyframe_points
+    places = np.column_stack([frames, values[keyed]])
+    points.add(len(frames))
+    points.foreach_set("co", places.ravel())
+    joined = "LINEAR" if keyed.all() else "BEZIER"
+    interpolation = _number(bpy.types.Keyframe, "interpolation", joined)
+    points.foreach_set("interpolation", np.full(len(frames), interpolation, np.int32))
     plain, extreme = (_number(bpy.types.Keyframe, "type", t) for t in ("KEYFRAME", "EXTREME"))
-    points.foreach_set("type", np.where(keys.locked, extreme, plain).astype(np.int32))
+    points.foreach_set("type", np.where(keys.locked[keyed], extreme, plain).astype(np.int32))
+    if joined == "BEZIER":
+        _set_handles(points, places, slope[keyed])
     curve.update()
+
+
+def _set_handles(points: bpy.types.FCurveKeyframePoints, places: np.ndarray, slope) -> None:
+    """Handles a third of the way to the keys beside, so that time runs evenly between them."""
+    thirds = np.diff(places[:, 0]) / 3
+    free = _number(bpy.types.Keyframe, "handle_left_type", "FREE")
+    reaches = {"left": -np.r_[thirds[:1], thirds], "right": np.r_[thirds, thirds[-1:]]}
+    for side, reach in reaches.items():
+        points.foreach_set(f"handle_{side}_type", np.full(len(slope), free, np.int32))
+        handles = places + reach[:, None] * np.column_stack([np.ones_like(slope), slope])
+        points.foreach_set(f"handle_{side}", handles.ravel())
 
 
 def _number(owner: type, attribute: str, item: str) -> int:

@@ -48,8 +48,10 @@ def add_performance(scene: bpy.types.Scene, take: ExportRequest) -> Performance:
             show_footage(placed, take.footage[camera.name], take.motion.frames)
     armature = add_armature(take.body, take.name, space, collection)
     mesh = add_mesh(take.body, take.body.surfaces[-1], armature)
-    frames = scene_frames(scene, take.motion.frames, take.motion.rate)
-    add_action(armature, take.body, take.name, Keys(frames, take.motion.pose, take.motion.locked))
+    motion = take.motion
+    frames = scene_frames(scene, motion.frames, motion.rate)
+    keys = Keys(frames, motion.pose, motion.locked, motion.keyed)
+    add_action(armature, take.body, take.name, keys)
     if cameras:
         look_through(scene, cameras[0])
     return Performance(space, cameras, armature, mesh)

@@ -19,11 +19,23 @@ TOLERANCE = 1e-9
 
 def joint_transforms(body: Body, poses: np.ndarray) -> np.ndarray:
     """(N, J, 3, 4) world_from_joint of poses (N, D), metres."""
+    return chained(body, joint_motions(body, poses))
+
+
+def joint_motions(body: Body, poses: np.ndarray) -> np.ndarray:
+    """(N, J, 3, 4) rotation and shift of every joint in its own space, of poses (N, D)."""
     poses = _checked(body, poses)
-    out = np.zeros((len(poses), len(body.joint_names), 3, 4))
+    motions = np.zeros((len(poses), len(body.joint_names), 3, 4))
+    for joint in range(len(body.joint_names)):
+        motions[:, joint, :, :3], motions[:, joint, :, 3] = _joint_motion(body, joint, poses)
+    return motions
+
+
+def chained(body: Body, motions: np.ndarray) -> np.ndarray:
+    """(N, J, 3, 4) world_from_joint of the joints' own motions (N, J, 3, 4)."""
+    out = np.zeros_like(motions)
     for joint, parent in enumerate(body.parents):
-        rotation, shift = _joint_motion(body, joint, poses)
-        offset = body.offsets[joint] + shift
+        rotation, offset = motions[:, joint, :, :3], body.offsets[joint] + motions[:, joint, :, 3]
         if parent < 0:
             out[:, joint, :, :3], out[:, joint, :, 3] = rotation, offset
             continue
@@ -57,7 +69,12 @@ def joint_positions(body: Body, poses: np.ndarray) -> np.ndarray:
 
 def points(body: Body, poses: np.ndarray) -> np.ndarray:
     """(N, 14, 3) world metres of `POINT_NAMES` in poses (N, D)."""
-    transforms = joint_transforms(body, poses)[:, body.point_joints]
+    return carried_points(body, joint_transforms(body, poses))
+
+
+def carried_points(body: Body, transforms: np.ndarray) -> np.ndarray:
+    """(N, 14, 3) world metres of `POINT_NAMES`, of world_from_joint (N, J, 3, 4)."""
+    transforms = transforms[:, body.point_joints]
     return (transforms[..., :3] @ body.point_offsets[..., None])[..., 0] + transforms[..., 3]
 
 

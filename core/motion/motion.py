@@ -38,6 +38,8 @@ class Motion:
         confidence: (T, 14) probability that a point is off by less than 50 mm.
         lost: (T,) bool, the pose is not to be trusted.
         locked: (T,) bool, the pose was given by the user.
+        confidence_raw: (T, 14) the confidence in ``pose_raw``.
+        keyed: (T, J) bool, the frames from which a joint's motion follows in between.
     """
 
     fps: tuple[int, int]
@@ -57,6 +59,8 @@ class Motion:
     confidence: np.ndarray
     lost: np.ndarray
     locked: np.ndarray
+    confidence_raw: np.ndarray
+    keyed: np.ndarray
 
     @property
     def rate(self) -> Fraction:
@@ -77,6 +81,7 @@ def read_motion(path: Path) -> Motion:
         MocapError: no such file, not a motion file, a damaged one, or one of another version.
     """
     stored = read_archive(path, "motion.npz", "give the file that fit wrote")
+    stored = {**_before_cleaning(stored), **stored}
     missing = [f.name for f in fields(Motion) if f.name not in stored]
     if missing or not np.array_equal(stored.get("version", 0), VERSION):
         raise MocapError("is no motion file of this version", "run fit again", file=path)
@@ -85,3 +90,11 @@ def read_motion(path: Path) -> Motion:
         values[name] = tuple(str(text) for text in values[name])
     values["fps"] = tuple(int(number) for number in values["fps"])
     return Motion(**values)
+
+
+def _before_cleaning(stored: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """What files do not hold that are older than cleaning."""
+    if not {"confidence", "joints"} <= stored.keys():
+        return {}
+    keyed = np.ones(stored["joints"].shape[:2], bool)
+    return {"confidence_raw": stored["confidence"], "keyed": keyed}

@@ -173,6 +173,8 @@ def make_take(tmp_path):
             confidence=np.ones((count, 14)),
             lost=np.zeros(count, bool),
             locked=np.arange(count) == 2,
+            confidence_raw=np.ones((count, 14)),
+            keyed=np.ones((count, len(body.joint_names)), bool),
         )
         return ExportRequest(body, motion, tuple(cameras), "walk", formats, tmp_path, footage or {})
 

@@ -37,6 +37,8 @@ def motion():
         confidence=np.ones((count, 14)),
         lost=np.zeros(count, bool),
         locked=np.zeros(count, bool),
+        confidence_raw=np.ones((count, 14)),
+        keyed=np.zeros((count, 0), bool),
     )
 
 
