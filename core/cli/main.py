@@ -28,6 +28,7 @@ COMMANDS = {
     "fit": "track the performer of a take and write the motion",
     "masks": "write the silhouettes of a take as masks and tell how sound they look",
     "plate": "make a plate of the empty scene for each camera from its footage and further stills",
+    "clean": "smooth the motion of a fit, fill gaps, hold the feet where they stand, or undo that",
     "export": "write the result of a fit in further formats",
     "score": "measure the error of a motion against a reference, in mm",
     "info": "check everything that fit will meet and say what is missing",

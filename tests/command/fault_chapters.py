@@ -1,6 +1,7 @@
 """All chapters of faults, in the order of the table."""
 
 import faults_of_calibration
+import faults_of_cleaning
 import faults_of_footage
 import faults_of_output
 import faults_of_take
@@ -13,4 +14,5 @@ CHAPTERS = (
     faults_of_footage.FILES,
     faults_of_footage.MASKS,
     faults_of_output.OUTPUT,
+    faults_of_cleaning.CLEANING,
 )
