@@ -44,7 +44,7 @@ def panels_picture(title: str, unit: str, panels: Sequence[Panel]) -> str:
         top = TOP + _ABOVE + (k // across) * (_TALL + _ABOVE + _BELOW)
         shapes += _Frame(panel, left, top, wide).shapes(colours)
     height = TOP + rows * (_TALL + _ABOVE + _BELOW) + BOTTOM
-    return picture(title, height, [*legend(series, 12, 150), *shapes, axis_unit(unit, height)])
+    return picture(title, height, [*legend(series, 12, 210), *shapes, axis_unit(unit, height)])
 
 
 class _Frame:

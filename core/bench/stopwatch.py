@@ -1,4 +1,7 @@
-"""Where time goes, told by stages that are entered and left; inner stages' time is their own."""
+"""Where the processors' time goes, told by stages that are entered and left.
+
+It is that of all of the process's threads, so that other processes change nothing.
+"""
 
 import time
 from collections import defaultdict
@@ -7,7 +10,7 @@ from typing import Any
 
 
 class Stopwatch:
-    """Seconds spent in each stage, without those of stages entered from it.
+    """Processor seconds spent in each stage, without those of stages entered from it.
 
     Attributes:
         seconds: by stage.
@@ -21,12 +24,12 @@ class Stopwatch:
         """``function``, which counts as ``stage`` from now on."""
 
         def call(*arguments, **keywords):
-            begin = time.perf_counter()
+            begin = time.process_time()
             self._inner.append(0.0)
             try:
                 return function(*arguments, **keywords)
             finally:
-                took = time.perf_counter() - begin
+                took = time.process_time() - begin
                 self.seconds[stage] += took - self._inner.pop()
                 if self._inner:
                     self._inner[-1] += took

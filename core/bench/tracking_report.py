@@ -6,10 +6,11 @@ from dataclasses import asdict
 
 from .tracking import TrackingFigures
 from .tracking_confidence import BAD_MM, BINS, DOUBT, GOOD_MM, Reliability, reliability
-from .tracking_runs import DEFAULT, Track
+from .tracking_runs import Track
 from .tracking_speed import SpeedFigures
 from .tracking_torments import recovery
 from .tracking_trials import LADDER, SECTIONS, TAKES, TORMENTS, Result
+from .tracking_variants import DEFAULT
 
 
 def as_dict(figures: TrackingFigures) -> dict:
@@ -33,7 +34,7 @@ def speed_as_dict(speed: SpeedFigures) -> dict:
         **asdict(speed),
         "hierarchical_ratio": speed.hierarchical / tracking,
         "baseline_ratio": None if speed.baseline is None else speed.baseline / tracking,
-        "shares": {stage: s / speed.all_told for stage, s in speed.stages.items()},
+        "shares": {stage: s / speed.busy for stage, s in speed.stages.items()},
     }
 
 
@@ -127,7 +128,7 @@ def _figures(track: Track) -> dict:
         "limb_losses": found.limb_losses,
         "frames_with_a_lost_limb": found.frames_with_a_lost_limb,
         "jitter_mm": found.jitter,
-        "seconds_per_frame": float(track.seconds.mean()),
+        "seconds_per_frame": track.seconds_per_frame,
         "evaluations_per_frame": float(track.evaluations.mean()),
     }
 
@@ -144,6 +145,7 @@ def _recovery(result: Result, undisturbed: Track) -> dict:
         "worst_limb": found.worst_limb,
         "worst_limb_mm": found.worst_mm,
         "back_in_frame": found.back,
+        "course": found.course.tolist(),
     }
 
 

@@ -1,19 +1,13 @@
 """Tracking a recording, and what the track is worth."""
 
+import time
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 
-from ..body.body import Body
-from ..cameras.camera import Camera
-from ..fitting.contour import ContourSettings, ContourTracker
-from ..fitting.contour_descent import DescentSettings
-from ..fitting.limb_search import LimbSettings
-from ..fitting.search import Search
+from ..ahead import made_ahead
 from ..fitting.second_look import Course, looked_again
-from ..fitting.tracker import EvaluatorFactory, Past, PoseFit, Tally, Tracker
 from ..fitting.tracking import FrameFit, History, track
 from ..motion.motion import Motion
 from ..motion.point_track import PointTrack
@@ -24,25 +18,10 @@ from ..rendering.detail import with_level_for
 from ..silhouettes.silhouette import Silhouette
 from .disturbances.recording import Recording
 from .tracking_takes import Beginning, native_choice, truth_of
+from .tracking_variants import Variant
 
-MakeTracker = Callable[[Body, tuple[Camera, ...], EvaluatorFactory], Tracker]
 Advance = Callable[[int], None]
 """Told the number of each frame that is done."""
-
-
-@dataclass(frozen=True, eq=False)
-class Variant:
-    """A way to track.
-
-    Attributes:
-        name: in tables.
-        make: the tracker of a body in cameras.
-        second_look: whether doubtful stretches are tracked from the other end, too.
-    """
-
-    name: str
-    make: MakeTracker
-    second_look: bool = True
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,15 +32,20 @@ class Track:
         motion: poses, points and what the tracker thinks of them.
         score: against the truth.
         errors: (T, 14) mm from the truth, absolute.
-        seconds: (T,) of each fit.
+        seconds: all fits and the second look took, without footage.
         evaluations: (T,) candidates that were drawn.
     """
 
     motion: Motion
     score: Score
     errors: np.ndarray
-    seconds: np.ndarray
+    seconds: float
     evaluations: np.ndarray
+
+    @property
+    def seconds_per_frame(self) -> float:
+        """Their mean."""
+        return self.seconds / len(self.errors)
 
 
 def tracked(
@@ -71,7 +55,7 @@ def tracked(
     advance: Advance,
     make_evaluator: MakeEvaluator | None = None,
 ) -> Track:
-    """The recording tracked from ``start`` on, forward to its end and backward to its begin.
+    """The recording tracked as a fit tracks a take.
 
     Args:
         recording: what is tracked.
@@ -80,86 +64,72 @@ def tracked(
         advance: told of each frame.
         make_evaluator: what draws; None for what fits draw with.
     """
-    found_by_frame = {}
-    for fit in take_fits(recording, start, variant, make_evaluator or native_choice()):
-        if fit.frame not in found_by_frame:
-            advance(fit.frame)
-        found_by_frame[fit.frame] = fit
-    fits = [found_by_frame[frame] for frame in sorted(found_by_frame)]
+    make = with_level_for(start.pose, make_evaluator or native_choice())
+    passes = Passes(recording, start, variant, variant.make(start.body, recording.cameras, make))
+    fits = []
+    for fit in passes.first():
+        fits.append(fit)
+        advance(fit.frame)
+    begin = time.perf_counter()
+    fits = passes.second()
+    looking = time.perf_counter() - begin
     names = [camera.name for camera in recording.cameras]
     motion = recorded(fits, start.body, names, recording.fps)
-    truth = truth_of(recording)
-    found = PointTrack(motion.point_names, motion.frames, motion.points)
     return Track(
         motion=motion,
-        score=score(truth, found),
+        score=score(truth_of(recording), _points(motion)),
         errors=_errors(recording, motion),
-        seconds=np.array([fit.seconds for fit in fits]),
+        seconds=looking + sum(fit.seconds for fit in fits),
         evaluations=np.array([fit.tally.evaluated for fit in fits]),
     )
 
 
-def take_fits(
-    recording: Recording, start: Beginning, variant: Variant, make_evaluator: MakeEvaluator
-) -> Iterator[FrameFit]:
-    """The fits of all frames, in the order in which a fit of the take finds them.
+class Passes:
+    """The passes over a recording, as `results.passes` has them over a take.
 
-    Those that a second look changes come once more.
+    Args:
+        recording: what is tracked.
+        start: the initial pose.
+        variant: whether there is a second look.
+        tracker: fits each frame.
     """
-    make = with_level_for(start.pose, make_evaluator)
-    tracker = variant.make(start.body, recording.cameras, make)
-    after = [frame for frame in recording.frames if frame >= start.frame]
-    before = [frame for frame in reversed(recording.frames) if frame < start.frame]
 
-    def read(frames: Iterable[int]) -> Iterator[tuple[int, tuple[Silhouette, ...]]]:
-        return ((frame, recording.silhouettes(frame)) for frame in frames)
+    def __init__(self, recording: Recording, start: Beginning, variant: Variant, tracker):
+        self._recording, self._variant, self._tracker = recording, variant, tracker
+        self._pose, self._courses = start.pose, []
+        after = [frame for frame in recording.frames if frame >= start.frame]
+        before = [frame for frame in reversed(recording.frames) if frame < start.frame]
+        self._directions = [frames for frames in (after, before) if frames]
 
-    for frames in after, before:
-        fits = []
-        for fit in track(tracker, History(start.pose), read(frames)):
-            fits.append(fit)
-            yield fit
-        if fits and variant.second_look:
-            for changed in looked_again(tracker, Course(fits, float(recording.fps)), read):
-                yield from changed
+    def first(self) -> Iterator[FrameFit]:
+        """The fits from the initial pose on, then of what comes before."""
+        for frames in self._directions:
+            fits = []
+            for fit in track(self._tracker, History(self._pose), made_ahead(self._read(frames))):
+                fits.append(fit)
+                yield fit
+            self._courses.append(Course(fits, truth_of(self._recording).fps or 1.0))
+
+    def second(self) -> list[FrameFit]:
+        """All fits, what the first passes left in doubt looked at again."""
+        found = {fit.frame: fit for course in self._courses for fit in course.fits}
+        for course in self._courses if self._variant.second_look else ():
+            for changed in looked_again(self._tracker, course, self._read):
+                found.update((fit.frame, fit) for fit in changed)
+        return [found[frame] for frame in sorted(found)]
+
+    def _read(self, frames: Iterable[int]) -> Iterator[tuple[int, tuple[Silhouette, ...]]]:
+        for frame in frames:
+            silhouettes = self._recording.silhouettes(frame)
+            for silhouette in silhouettes:
+                _ = silhouette.contour
+            yield frame, silhouettes
+
+
+def _points(motion: Motion) -> PointTrack:
+    return PointTrack(motion.point_names, motion.frames, motion.points)
 
 
 def _errors(recording: Recording, motion: Motion) -> np.ndarray:
     truth = np.stack([recording.points(frame) for frame in motion.frames.tolist()])
     return 1000 * np.linalg.norm(motion.points - truth, axis=2)
-
-
-class HoldLast:
-    """The tracker that does nothing: every frame's pose is the last one's."""
-
-    def __init__(self, body: Body, cameras: tuple[Camera, ...], make_evaluator: EvaluatorFactory):
-        self.evaluator = make_evaluator(body, cameras)
-
-    def fit(self, silhouettes, past: Past) -> PoseFit:
-        """The last pose (D,), whatever the silhouettes show."""
-        return PoseFit(past.last, 0, Tally())
-
-
-DEFAULT = Variant("contour", Search("contour").made)
-BASELINES = (
-    Variant("hierarchical", Search("hierarchical").made),
-    Variant("hold the first pose", HoldLast),
-)
-
-
-def ablations() -> tuple[Variant, ...]:
-    """The default tracker with one of its parts off at a time."""
-    return (
-        Variant("no second look", Search("contour").made, second_look=False),
-        Variant("no limb is sought again", _contour(limbs=None)),
-        Variant("limbs never sought everywhere", _contour(limbs=LimbSettings(everywhere=0))),
-        Variant("all views trusted alike", _contour(views_weighed=False)),
-        Variant("no rest prior where ends are compared", _contour(prior_share=0.0)),
-        Variant("no rest prior in descents", _contour(descent=DescentSettings(rest=0.0))),
-        Variant("no normals in descents", _contour(descent=DescentSettings(turn_m=0.0))),
-        Variant("descents reach 6 cm from the start", _contour(reaches_m=(0.06, 0.06))),
-    )
-
-
-def _contour(**changes) -> MakeTracker:
-    return partial(ContourTracker, settings=ContourSettings(**changes))

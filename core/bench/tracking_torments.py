@@ -15,11 +15,11 @@ LIMBS = {
 """Each limb's two points."""
 BACK_MM = 50.0
 """A limb is back where neither of its points is off by so much more than without the torment."""
-AFTER = 3
+AFTER, AROUND = 3, 8
 _STAYS = 2
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Recovery:
     """What a torment did; errors are means over the 14 points, mm.
 
@@ -30,6 +30,8 @@ class Recovery:
         after: in the first, second and third frame after; NaN beyond the end.
         worst_limb: whichever is furthest off in these three.
         worst_mm: the larger of its two points' errors.
+        course: (n, 2) frames, counted from the last tormented one, and their mean errors: all from
+            `AROUND` frames before the torment to `AROUND` frames after it.
         back: number of the frame after the torment from which on every limb is back, for three
             frames at least or to the end; None where that never happens.
     """
@@ -40,6 +42,7 @@ class Recovery:
     after: tuple[float, ...]
     worst_limb: str
     worst_mm: float
+    course: np.ndarray
     back: int | None
 
 
@@ -59,6 +62,7 @@ def recovery(track: Track, undisturbed: Track, frames: tuple[int, int]) -> Recov
         after=tuple(_mean(track.errors[after[k : k + 1]]) for k in range(AFTER)),
         worst_limb="" if worst is None else tuple(LIMBS)[worst[1]],
         worst_mm=float("nan") if worst is None else float(first[worst]),
+        course=_course(track, frames),
         back=_back(limbs[after], limb_errors(known)[after] + BACK_MM),
     )
 
@@ -67,6 +71,13 @@ def limb_errors(errors: np.ndarray) -> np.ndarray:
     """(T, 4) of errors (T, 14): the larger one of each limb's two points."""
     columns = [[POINT_NAMES.index(name) for name in names] for names in LIMBS.values()]
     return errors[:, columns].max(axis=2)
+
+
+def _course(track: Track, frames: tuple[int, int]) -> np.ndarray:
+    numbers = track.motion.frames
+    near = (numbers >= frames[0] - AROUND) & (numbers <= frames[1] + AROUND)
+    means = [_mean(errors) for errors in track.errors[near]]
+    return np.column_stack([numbers[near] - frames[1], means])
 
 
 def _back(errors: np.ndarray, most: np.ndarray) -> int | None:

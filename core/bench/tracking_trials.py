@@ -6,8 +6,9 @@ from dataclasses import dataclass
 from .disturbances.ladder import LEVELS, noise_ladder, torments
 from .disturbances.less_footage import EveryKth, SomeCameras
 from .disturbances.recording import Recording, disturbed
-from .tracking_runs import BASELINES, DEFAULT, Track, Variant, ablations
+from .tracking_runs import Track
 from .tracking_takes import KnownTake, initial_end, spread_views
+from .tracking_variants import BASELINES, DEFAULT, Variant, ablations
 
 TAKES, TORMENTS, ABLATION = "takes", "torments", "ablation"
 LADDER, CAMERAS, RATES = "noise ladder", "number of cameras", "frame rate"
@@ -45,7 +46,7 @@ class Trial:
         section: one of `SECTIONS`.
         take: its name.
         name: of what is tried, in tables.
-        amount: of it, in words; empty where there is only one.
+        amount: of it, or whom it hits, in words; empty where there is only one.
         level: of it as a number, for plots.
         recording: what is tracked.
         variant: how.
@@ -86,10 +87,10 @@ def trials_of(known: KnownTake, settings: TrialSettings) -> Iterator[Trial]:
     for number, place in enumerate(settings.places):
         for torment in torments(recording, place, number):
             tormented = disturbed(recording, settings.seed, torment.disturbance)
-            where = f"from frame {torment.frames[0]}"
             yield Trial(
-                TORMENTS, name, torment.name, tormented, amount=where, frames=torment.frames
-            )
+                TORMENTS, name, torment.name, tormented,
+                amount=torment.whom, frames=torment.frames,
+            )  # fmt: skip
     for variant in ablations():
         yield Trial(ABLATION, name, variant.name, recording, variant)
     yield from _ladder(known, settings)

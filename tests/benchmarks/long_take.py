@@ -3,10 +3,10 @@
     cd tests && python -m benchmarks.long_take [--frames 10000] [--svg FILE] [--json FILE]
 
 A take of a few poses that go back and forth, their masks linked again and again (160 x 120 px, four
-cameras), is fitted in a child process, with the least search there is. Its resident memory and the
-size of its output folder are looked at while its progress is read: every so many frames while it
-fits, and twice a second throughout. What the fit holds more than after 200 frames comes from the
-number of frames.
+cameras), is fitted in a child process with the default tracker. Its resident memory and the size of
+its output folder are looked at while its progress is read: every so many frames while it fits, and
+twice a second throughout. What the fit holds more than after 200 frames comes from the number of
+frames.
 """
 
 import argparse
@@ -31,17 +31,7 @@ from small_take import TAKE, calibration_of
 SETTLED_FRAMES = 200
 MOST_GROWTH_MB = 30.0
 POSES = 24
-PROGRAM = """
-import sys
-from dataclasses import replace
-from silhouette_mocap.core import pipeline
-from silhouette_mocap.core.cli import main
-from silhouette_mocap.core.fitting.hierarchical import FAITHFUL
-
-least = replace(FAITHFUL, rounds=1, grid_steps=2, effort=replace(FAITHFUL.effort, sweeps=1))
-pipeline.SETTINGS = {"robust": (least, least)}
-sys.exit(main(sys.argv[1:]))
-"""
+PROGRAM = "import sys; from silhouette_mocap.core.cli import main; sys.exit(main(sys.argv[1:]))"
 
 
 @dataclass(frozen=True)

@@ -33,6 +33,8 @@ class BoundaryJitter(PictureDisturbance):
 class Swelling(PictureDisturbance):
     """The boundary lies further out everywhere: dilation, or erosion where negative.
 
+    Parts of a pixel are met on average, by chance pixel for pixel.
+
     Attributes:
         px: by so much.
     """
@@ -41,7 +43,8 @@ class Swelling(PictureDisturbance):
 
     def mask(self, sight: Sight, rng: np.random.Generator) -> np.ndarray:
         """(H, W) bool, the larger or smaller silhouette."""
-        return sight.silhouette.distances < self.px
+        distances = sight.silhouette.distances
+        return distances + rng.uniform(-0.5, 0.5, distances.shape) < self.px
 
 
 @dataclass(frozen=True)

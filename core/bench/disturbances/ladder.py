@@ -45,11 +45,13 @@ class Torment:
 
     Attributes:
         name: what happens.
+        whom: the side or the camera that is hit.
         frames: first and last, inclusive.
         disturbance: limited to these frames.
     """
 
     name: str
+    whom: str
     frames: tuple[int, int]
     disturbance: Disturbance
 
@@ -140,15 +142,16 @@ def torments(recording: Recording, place: float, number: int) -> list[Torment]:
     bite, second = within(_BITE_FRAMES), within(round(recording.fps))
     arm, blob = LimbBitten(side), BlobOnHand(side)
     before = FrozenCamera(max(begin - 1, frames[0]))
+    who = recording.cameras[camera[0]].name
     return [
-        Torment(f"{side} arm bitten off, all cameras", bite, Only(arm, bite)),
-        Torment(f"{side} arm bitten off, every other camera", bite, Only(arm, bite, half)),
-        Torment(f"blob on the {side} hand", bite, Only(blob, bite)),
-        Torment("one camera dead for 1 s", second, Only(DeadCamera(), second, camera)),
-        Torment("one camera frozen for 1 s", second, Only(before, second, camera)),
-        Torment("one camera a frame late for 1 s", second, Only(OutOfStep(-1), second, camera)),
-        Torment("occluder, 0.3 m wide, for 1 s", second, Only(Occluder(0.3), second, camera)),
-        Torment("every third frame only, for 1 s", second, EveryKth(3, second)),
+        Torment("arm bitten off, all cameras", side, bite, Only(arm, bite)),
+        Torment("arm bitten off, every other camera", side, bite, Only(arm, bite, half)),
+        Torment("blob on the hand", side, bite, Only(blob, bite)),
+        Torment("camera dead for 1 s", who, second, Only(DeadCamera(), second, camera)),
+        Torment("camera frozen for 1 s", who, second, Only(before, second, camera)),
+        Torment("camera a frame late for 1 s", who, second, Only(OutOfStep(-1), second, camera)),
+        Torment("occluder, 0.3 m, for 1 s", who, second, Only(Occluder(0.3), second, camera)),
+        Torment("every third frame for 1 s", "all", second, EveryKth(3, second)),
     ]  # fmt: skip
 
 

@@ -40,6 +40,13 @@ def test_a_limb_that_is_back_at_once_is_back_in_the_first_frame():
     assert found.after == (10, 10, 10) and found.worst_mm == 10
 
 
+def test_the_course_is_told_from_the_last_frame_of_the_torment():
+    found = recovery(wrist_off_in([10, 11], count=30), wrist_off_in([], count=30), (10, 11))
+    assert found.course[:, 0].tolist() == list(range(-9, 9))
+    assert found.course[found.course[:, 0] > 0, 1] == pytest.approx(10)
+    assert found.course[8:10, 1] == pytest.approx(10 + 290 / 14)
+
+
 def test_a_limb_is_back_only_where_it_stays():
     found = recovery(wrist_off_in([4, 5, 7]), CLEAN, (4, 5))
     assert found.back == 3
@@ -92,7 +99,7 @@ def test_the_truth_of_fewer_frames_has_their_rate():
 
 def test_inner_stages_keep_their_time_to_themselves(monkeypatch):
     clock = iter([0.0, 1.0, 3.0, 10.0])
-    monkeypatch.setattr(stopwatch.time, "perf_counter", lambda: next(clock))
+    monkeypatch.setattr(stopwatch.time, "process_time", lambda: next(clock))
     watch = Stopwatch()
     inner = watch.timed("inner", lambda: None)
     watch.timed("outer", inner)()

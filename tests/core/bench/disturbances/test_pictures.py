@@ -18,6 +18,7 @@ from silhouette_mocap.core.silhouettes.cleaning import Cleaning, cleaned
 
 RECORDING = known_recording()
 SQUARE = np.ones((3, 3), np.uint8)
+CROSS = cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3))
 
 
 def before_and_after(disturbance, frame=5):
@@ -34,11 +35,21 @@ def pixel(name, view, frame=5):
     return y, x
 
 
-@pytest.mark.parametrize(("px", "moved"), [(1.0, cv2.dilate), (-1.0, cv2.erode)])
-def test_swelling_by_a_pixel_is_dilation_or_erosion_by_a_square(px, moved):
-    for clean, found in before_and_after(Swelling(px)):
-        square = moved(clean.astype(np.uint8), SQUARE).view(bool)
-        assert np.array_equal(found, cleaned(square, Cleaning()).mask)
+@pytest.mark.parametrize(("sign", "moved"), [(1, cv2.dilate), (-1, cv2.erode)])
+def test_a_boundary_moves_by_a_pixel_or_by_half_of_one_on_average(sign, moved):
+    for clean, found in before_and_after(Swelling(sign * 1.0)):
+        least, most = (
+            cleaned(moved(clean.astype(np.uint8), shape).view(bool), Cleaning()).mask
+            for shape in (CROSS, SQUARE)
+        )
+        smaller, larger = (least, most) if sign > 0 else (most, least)
+        assert not (smaller & ~found).any() and not (found & ~larger).any()
+    changed = [clean != found for clean, found in before_and_after(Swelling(sign * 0.5))]
+    whole = [
+        clean != moved(clean.astype(np.uint8), CROSS).view(bool)
+        for clean, _ in before_and_after(Swelling(0.5))
+    ]
+    assert np.sum(changed) / np.sum(whole) == pytest.approx(0.5, abs=0.12)
 
 
 def test_a_jittering_boundary_moves_both_ways_and_no_further_than_noise_does():
