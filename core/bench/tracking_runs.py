@@ -8,6 +8,7 @@ import numpy as np
 
 from ..ahead import made_ahead
 from ..fitting.second_look import Course, looked_again
+from ..fitting.tracker import Tracker
 from ..fitting.tracking import FrameFit, History, track
 from ..motion.motion import Motion
 from ..motion.point_track import PointTrack
@@ -94,7 +95,7 @@ class Passes:
         tracker: fits each frame.
     """
 
-    def __init__(self, recording: Recording, start: Beginning, variant: Variant, tracker):
+    def __init__(self, recording: Recording, start: Beginning, variant: Variant, tracker: Tracker):
         self._recording, self._variant, self._tracker = recording, variant, tracker
         self._pose, self._courses = start.pose, []
         after = [frame for frame in recording.frames if frame >= start.frame]

@@ -4,20 +4,15 @@ The baseline is what Theobalt et al. 2003 did, on the machine at hand: Powell's 
 one energy at a time, and a grid for each limb, with the energy computed by OpenGL as in the paper
 (`rendering.opengl.paper`) on a mesh as fine as theirs.
 
-Reading, tracking and writing go on beside each other. Stages are therefore told in the processors'
-time, all threads together, and measured one after another; what a fit takes beyond them is for the
-overlay and the files.
+What a fit takes beyond its stages (`tracking_stages`) is for the overlay and the files.
 """
 
 import tempfile
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import Any
-
-import numpy as np
 
 from ..body.body import Body
 from ..cameras.camera import Camera
@@ -25,31 +20,20 @@ from ..energy.evaluator import Evaluator
 from ..errors import MocapError
 from ..fitting.hierarchical import FAITHFUL, HierarchicalTracker
 from ..fitting.search import Search
-from ..fitting.second_look import Course, looked_again
-from ..fitting.tracker import Tracker
-from ..fitting.tracking import FrameFit, History, track
-from ..pipeline import FitRequest, fit, initial_frames
+from ..pipeline import FitRequest, fit
 from ..progress import Progress, Silence
 from ..rendering.choice import MakeEvaluator
-from ..rendering.detail import with_level_for
 from ..rendering.native import NativeEvaluator
 from ..rendering.opengl.paper import PaperEvaluator
-from ..silhouettes.silhouette import Silhouette
 from ..take.take import Take
-from ..take.views import Views, open_views
 from .disturbances.recording import Recording
 from .energy import named
 from .rows import full_level
-from .stopwatch import Stopwatch
-from .tracking_runs import Advance, Track, tracked
-from .tracking_takes import Beginning, KnownTake, native_choice
+from .tracking_runs import Track, tracked
+from .tracking_stages import KEPT, stage_seconds
+from .tracking_takes import Beginning, KnownTake
 from .tracking_variants import DEFAULT, HIERARCHICAL, Variant
 
-READ, CONTOURS, PREPARED = "footage read", "contours found", "weights and doubts"
-OUTLINES, EQUATIONS = "descents: outlines drawn", "descents: equations"
-JUDGED, LIMBS, SCORES = "poses judged", "limbs sought", "scores"
-AGAIN, KEPT = "second look", "overlay and files"
-STAGES = (READ, CONTOURS, PREPARED, OUTLINES, EQUATIONS, JUDGED, LIMBS, SCORES, AGAIN, KEPT)
 BASELINE = Variant("2003", partial(HierarchicalTracker, settings=FAITHFUL), second_look=False)
 
 
@@ -116,7 +100,7 @@ def speed_figures(
     frames = [frame for frame in known.recording.frames if frame >= start.frame]
     recording = replace(known.recording, frames=tuple(frames[: settings.frames]))
     progress.begin(f"speed of {known.take.name}", settings.steps(len(recording.frames)))
-    stages = _stages(known.take, recording, start, progress.advance)
+    stages = stage_seconds(known.take, recording, start, progress.advance)
     all_told, busy = _all_told(known.take, recording.frames, progress)
     one, two = (
         tracked(recording, start, DEFAULT, progress.advance, threaded(count)) for count in (1, 2)
@@ -185,69 +169,6 @@ class _Slow:
 
 def _paper(body: Body, cameras: tuple[Camera, ...], level: int = 0) -> Evaluator:
     return PaperEvaluator(body, cameras, full_level(body))
-
-
-def _stages(
-    take: Take, recording: Recording, start: Beginning, advance: Advance
-) -> dict[str, float]:
-    """Processor seconds per frame of all stages but the last."""
-    watch = Stopwatch()
-    views = open_views(take)
-    views, _ = views.reduced_and_seen(initial_frames(take, views.frames))
-    read = watch.timed(READ, views.silhouettes)
-    find = watch.timed(CONTOURS, lambda silhouettes: [s.contour for s in silhouettes])
-
-    def footage(frames: Sequence[int]):
-        for frame in frames:
-            silhouettes: tuple[Silhouette, ...] = read(frame)
-            find(silhouettes)
-            yield frame, silhouettes
-
-    make = with_level_for(start.pose, _timed_evaluators(watch))
-    tracker = _timed_tracker(DEFAULT.make(start.body, recording.cameras, make), watch)
-    fits, begin = [], time.process_time()
-    for found in track(tracker, History(start.pose), footage(recording.frames)):
-        fits.append(found)
-        advance(found.frame)
-    watch.seconds[SCORES] = time.process_time() - begin - sum(watch.seconds.values())
-    watch.timed(AGAIN, _looked_again)(fits, float(take.fps), views, start)
-    return {stage: watch.seconds[stage] / len(recording.frames) for stage in STAGES[:-1]}
-
-
-def _looked_again(fits: list[FrameFit], fps: float, views: Views, start: Beginning) -> None:
-    """The second look, with a tracker that nobody watches."""
-    make = with_level_for(start.pose, native_choice())
-    tracker = DEFAULT.make(start.body, views.cameras, make)
-
-    def read(frames: Sequence[int]) -> Iterator[tuple[int, tuple[Silhouette, ...]]]:
-        return ((frame, views.silhouettes(frame)) for frame in frames)
-
-    for _ in looked_again(tracker, Course(fits, fps), read):
-        pass
-
-
-def _timed_tracker(tracker: Any, watch: Stopwatch) -> Tracker:
-    """``tracker``, told apart by stages as far as it has them."""
-    if hasattr(tracker, "descent"):
-        tracker.descent = watch.watched(tracker.descent, {"run": EQUATIONS})
-    return watch.watched(tracker, {"fit": PREPARED})
-
-
-def _timed_evaluators(watch: Stopwatch) -> MakeEvaluator:
-    """What fits draw with, told apart by what is asked of it."""
-
-    def make(body: Body, cameras: tuple[Camera, ...], level: int = 0) -> Evaluator:
-        inner = native_choice()(body, cameras, level)
-        timed = watch.watched(inner, {"outline": OUTLINES, "masked": LIMBS})
-        whole, limbs = (watch.timed(stage, inner.energies) for stage in (JUDGED, LIMBS))
-
-        def energies(weights, poses: np.ndarray, segments: Sequence[int] | None = None):
-            return (whole if segments is None else limbs)(weights, poses, segments)
-
-        timed.energies = energies
-        return timed
-
-    return make
 
 
 class _Clock(Silence):

@@ -2,15 +2,19 @@
 
 import json
 import shutil
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from known_recording import known_poses, known_recording
 from silhouette_mocap.core.bench import tracking, tracking_speed, tracking_takes, tracking_trials
+from silhouette_mocap.core.bench.disturbances.failing_cameras import DeadCamera
 from silhouette_mocap.core.bench.disturbances.ladder import noise_ladder, torments
+from silhouette_mocap.core.bench.disturbances.recording import Only, disturbed
 from silhouette_mocap.core.bench.tracking_plots import PLOTS
 from silhouette_mocap.core.bench.tracking_runs import tracked
-from silhouette_mocap.core.bench.tracking_speed import STAGES, same_bits, threaded
+from silhouette_mocap.core.bench.tracking_speed import same_bits, threaded
+from silhouette_mocap.core.bench.tracking_stages import STAGES
 from silhouette_mocap.core.bench.tracking_takes import Beginning
 from silhouette_mocap.core.bench.tracking_trials import TrialSettings
 from silhouette_mocap.core.bench.tracking_variants import (
@@ -28,7 +32,7 @@ SECTIONS = ("takes", "torments", "ablation", "noise_ladder", "number_of_cameras"
 
 def short(frames):
     recording = known_recording()
-    return type(recording)(**{**vars(recording), "frames": recording.frames[frames]})
+    return replace(recording, frames=recording.frames[frames])
 
 
 def start_at(frame):
@@ -54,6 +58,19 @@ def test_a_take_is_tracked_forward_and_backward_from_its_initial_pose():
     assert order == [4, 5, 6, 3, 2]
     assert found.motion.frames.tolist() == [2, 3, 4, 5, 6]
     assert found.errors.shape == (5, 14) and found.score.absolute.mean < 33
+
+
+@pytest.mark.parametrize("variant", [DEFAULT, replace(DEFAULT, second_look=False)])
+def test_what_is_in_doubt_is_looked_at_again_unless_that_is_off(variant):
+    dark, read = disturbed(known_recording(), 0, Only(DeadCamera(), (3, 4))), []
+
+    def look(frame, view):
+        read.append(frame)
+        return dark.look(frame, view)
+
+    tracked(replace(dark, look=look), start_at(0), variant, lambda frame: None)
+    assert read.count(9) == len(dark.cameras)
+    assert (read.count(4) > len(dark.cameras)) == variant.second_look
 
 
 def test_to_hold_the_first_pose_is_as_wrong_as_the_performer_moves():

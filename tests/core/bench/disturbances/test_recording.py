@@ -1,5 +1,7 @@
 """What all disturbances have in common, and where they are limited to."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from known_recording import FRAMES, known_recording
@@ -81,5 +83,5 @@ def test_one_camera_is_always_left():
 
 def test_points_that_the_truth_lacks_are_unknown():
     truth = RECORDING.truth.between(0, 4)
-    assert np.isnan(type(RECORDING)(**{**vars(RECORDING), "truth": truth}).points(7)).all()
+    assert np.isnan(replace(RECORDING, truth=truth).points(7)).all()
     assert np.isfinite(RECORDING.points(7)).all()
