@@ -1,5 +1,6 @@
 """All chapters of faults, in the order of the table."""
 
+import faults_of_bench
 import faults_of_calibration
 import faults_of_cleaning
 import faults_of_footage
@@ -15,4 +16,5 @@ CHAPTERS = (
     faults_of_footage.MASKS,
     faults_of_output.OUTPUT,
     faults_of_cleaning.CLEANING,
+    faults_of_bench.BENCH,
 )

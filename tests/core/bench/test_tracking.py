@@ -1,7 +1,6 @@
 """The benchmark of tracking on takes so small that it is done in seconds."""
 
 import json
-import shutil
 from dataclasses import replace
 
 import numpy as np
@@ -124,24 +123,3 @@ def test_the_command_measures_everything_and_writes_it(few_trials, small_take, t
     assert set(found["confidence"]) == {"undisturbed", "tormented", "noisy", "all of these"}
     for name in ("tracking.md", "tracking_readme.md", *(f"{plot}.svg" for plot in PLOTS)):
         assert str(tmp_path / name) in shown.out and (tmp_path / name).is_file()
-
-
-def test_a_take_without_truth_is_refused_in_one_line(small_take, tmp_path, capsys):
-    folder = tmp_path / "session" / "small"
-    shutil.copytree(small_take.parent, folder)
-    (folder / "truth.npz").unlink()
-    assert main(["bench", "tracking", str(folder / "take.toml")]) == 2
-    error = capsys.readouterr().err
-    assert "truth.npz: is missing" in error and error.count("\n") == 1
-
-
-@pytest.mark.parametrize(
-    ("words", "told"),
-    [
-        (["energy", "take.toml"], "bench energy needs no take"),
-        (["tracking", "--prototypes", "x"], "belongs to bench energy"),
-    ],
-)
-def test_words_of_the_other_topic_are_refused(words, told, capsys):
-    assert main(["bench", *words]) == 2
-    assert told in capsys.readouterr().err
