@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 
 from ..motion.cleaning.cleaned import Cleaned
-from ..motion.cleaning.settings import FILTERS, CleanSettings
+from ..motion.cleaning.settings import FILTERS, REFIT, CleanSettings
 from ..motion.export_request import Exporter
 from ..pages.wording import spans
 from ..results.cleaning import clean_result, read_result, result_folder, undo_result
@@ -24,7 +24,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="frequency of which half is left; lower is smoother (default: 6, or 3 for one-euro)",
     )  # fmt: skip
     parser.add_argument(
-        "--filter", choices=FILTERS, default=FILTERS[0],
+        "--filter", choices=FILTERS, default=REFIT,
         help="refit (the whole take at once, acceleration penalised; the default), butterworth "
         "(second order, both ways) or one-euro (from the past alone)",
     )  # fmt: skip

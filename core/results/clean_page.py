@@ -48,15 +48,15 @@ def _summary(found: Cleaned) -> Html:
         slide = figures["feet"]["slide_mm"]
         shown.append(
             (
-                f"{decimal(slide['before']['mean'], 1)} → {decimal(slide['after']['mean'], 1)} mm",
-                "feet slide while they stand",
+                f"{decimal(slide['before']['mean'], 1)} → {decimal(slide['after']['mean'], 1)}",
+                "mm that feet slide while they stand",
             )
         )
     if found.keys is not None:
         keys = figures["keys"]
         shown.append((f"{100 * keys['kept'] / keys['of']:.0f} %", "of all keys are left"))
-        cost = f"{decimal(keys['error_mm']['max'], 1)} mm, {decimal(keys['error_deg']['max'], 1)}°"
-        shown.append((cost, "which they cost at most"))
+        shown.append((f"{decimal(keys['error_mm']['max'], 1)} mm", "cost of the keys, at most"))
+        shown.append((f"{decimal(keys['error_deg']['max'], 1)}°", "cost of the keys, at most"))
     return tiles(shown)
 
 

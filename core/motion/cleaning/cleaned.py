@@ -78,9 +78,7 @@ def cleaned(
     confidence = np.where(
         filled[:, None], np.minimum(raw.confidence, FILLED_CONFIDENCE), raw.confidence
     )
-    progress.begin("smoothing", 1)
-    found = replace(raw, pose=smoothed(body, raw, settings), confidence=confidence)
-    progress.advance(None)
+    found = replace(raw, pose=smoothed(body, raw, settings, progress), confidence=confidence)
     if settings.contacts:
         found, feet = with_feet_held(body, found, floor, progress)
     if settings.keys_mm is not None:

@@ -41,7 +41,7 @@ def _share(cut_off: float, rate: float) -> float:
     return 1.0 / (1.0 + rate / (2 * np.pi * cut_off))
 
 
-FILTERS: dict[str, Callable[[np.ndarray, float, float], np.ndarray]] = {
+OTHER_FILTERS: dict[str, Callable[[np.ndarray, float, float], np.ndarray]] = {
     "butterworth": butterworth,
     "one-euro": one_euro,
 }

@@ -27,8 +27,8 @@ from ...progress import Progress
 from .block_band import BlockBand
 from .soles import Soles
 
-_SPREAD_M, _SPREAD_RAD, _FOOT_SPREAD_RAD = 0.01, 0.05, 0.2
-"""s: of the root's moves, of the legs' angles, and of the feet's, which silhouettes show least."""
+_SPREAD_M, _SPREAD_RAD, _FOOT_SPREAD_RAD, _TOES_SPREAD_RAD = 0.01, 0.05, 0.25, 0.6
+"""s: of the root's moves, of legs, feet and toes; the last of these silhouettes show least."""
 _CUT_OFF_HZ = 3.0
 """Of the change."""
 _SLIDE_M, _SINK_M, _LIMIT_RAD, _HOVER_M = 2e-5, 1e-4, 1e-4, 0.1
@@ -41,7 +41,8 @@ _ROUNDS, _FREE_ROUNDS = 16, 4
 """In the free ones, what was stopped by floor or limit may leave it again."""
 _SHARE = 0.7
 """Of the wanted change that is made in later rounds, lest they swing to and fro."""
-_STILL = 1e-5
+_STILL = 1e-4
+"""m or rad; a smaller change in a round is the last one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -167,8 +168,10 @@ def _along(slopes: np.ndarray, change: np.ndarray) -> np.ndarray:
 def _spreads(body: Body, dofs: np.ndarray, soles: Soles) -> np.ndarray:
     """(K,) s of ``dofs``."""
     shifts = body.dofs.kinds[dofs] == DofKind.TRANSLATION
-    in_feet = np.isin(body.dofs.joints[dofs], soles.joints)
-    return np.where(shifts, _SPREAD_M, np.where(in_feet, _FOOT_SPREAD_RAD, _SPREAD_RAD))
+    joints = body.dofs.joints[dofs]
+    in_feet, in_toes = np.isin(joints, soles.joints), np.isin(body.parents[joints], soles.joints)
+    angles = np.where(in_toes, _TOES_SPREAD_RAD, np.where(in_feet, _FOOT_SPREAD_RAD, _SPREAD_RAD))
+    return np.where(shifts, _SPREAD_M, angles)
 
 
 def _leg_dofs(body: Body, twists: Twists, soles: Soles) -> np.ndarray:

@@ -1,13 +1,11 @@
 """Few keys instead of one per frame, and what that costs.
 
-A curve (`curves`) may lead from one key of a joint to the next if it nowhere turns or shifts the
-joint so much that the far end of what hangs on it is displaced by more than an allowance. Of all
-chains of such curves the one with the fewest keys is found by dynamic programming (after Perez and
-Vidal: Optimum polygonal approximation of digitized curves, 1994). Errors of joints add up along the
-body, so the allowance is adapted until no one of the 14 points is further off than was asked for.
-Locked frames stay keys.
+Each joint gets the shortest chain of curves (`key_chains`) of which none displaces the far end of
+what hangs on it by more than an allowance. Errors of joints add up along the body, so the allowance
+is adapted until no one of the 14 points is further off than was asked for. Locked frames stay keys.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,17 +14,14 @@ from scipy.spatial.transform import Rotation
 from ...body.body import Body
 from ...body.kinematics import carried_points, chained, joint_motions
 from ...progress import Progress
-from ..curves import components, followed, slopes
+from ..curves import followed
 from ..motion import Motion
+from .key_chains import Chains, Track, curve_lengths
 
-_ADAPTATIONS = 5
-_FIRST_SHARE, _AIM = 0.5, 0.9
-_LONGEST_S, _LENGTHS, _SAMPLES = 2.0, 40, 12
-"""Of a curve: seconds, how many lengths are tried, and where it is compared."""
+_FIRST_SHARE, _ADAPTATIONS = 0.5, 8
+"""Of the tolerance, that a joint may use up; and how often that is adapted."""
 _LEAST_REACH_M = 0.2
 """Of hands and toes, whose turns show more than the points tell."""
-_TIE = 1e-3
-"""Of chains with as many keys, the one nearer to the motion."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,20 +56,19 @@ def reduced_keys(body: Body, motion: Motion, tolerance_mm: float, progress: Prog
     motions = joint_motions(body, motion.pose)
     fixed = motion.locked | _ends(len(motion.pose))
     best = key_errors(body, motion.pose, np.ones((len(motions), len(body.parents)), bool))
-    progress.begin("keys", len(body.parents))
-    reaches, lengths, chains = _reaches(body), _lengths(float(motion.rate), len(motions)), []
-    for joint in range(len(body.parents)):
-        track = _Track.of(motions[:, joint], max(reaches[joint], _LEAST_REACH_M))
-        chains.append(_Chains.of(track, fixed, lengths))
-        progress.advance(None)
-    share = _FIRST_SHARE
+    lengths = curve_lengths(float(motion.rate), len(motions))
+    chains = Chains.of(_tracks(body, motions, progress), fixed, lengths)
+    share, kept, broken = _FIRST_SHARE, 0.0, np.inf
     for _ in range(_ADAPTATIONS):
-        keyed = np.column_stack([c.fewest(share * tolerance_mm / 1000) for c in chains])
-        found = key_errors(body, motion.pose, keyed)
+        found = key_errors(body, motion.pose, chains.fewest(share * tolerance_mm / 1000))
         worst = float(found.points_mm.max())
-        if worst <= tolerance_mm and keyed.sum() < best.keyed.sum():
-            best = found
-        share *= np.clip(_AIM * tolerance_mm / max(worst, 1e-9), 0.3, 2.0)
+        if worst > tolerance_mm:
+            broken = min(broken, share)
+        else:
+            kept = max(kept, share)
+            best = min(best, found, key=lambda keys: keys.keyed.sum())
+        between = kept > 0 and broken < np.inf
+        share = np.sqrt(kept * broken) if between else share * tolerance_mm / max(worst, 1e-9)
     return best
 
 
@@ -91,97 +85,13 @@ def key_errors(body: Body, poses: np.ndarray, keyed: np.ndarray) -> Keys:
     return Keys(keyed, 1000 * moved, np.degrees(angles))
 
 
-@dataclass(frozen=True, eq=False)
-class _Track:
-    """One joint's motion as it is keyed.
-
-    Attributes:
-        values: (T, 7) see `components`.
-        slopes: (T, 7) per frame.
-        reach: metres to the end of what hangs on the joint.
-    """
-
-    values: np.ndarray
-    slopes: np.ndarray
-    reach: float
-
-    @classmethod
-    def of(cls, motions: np.ndarray, reach: float) -> "_Track":
-        """Of a joint's own motions (T, 3, 4)."""
-        values = components(motions)
-        return cls(values, slopes(values, np.arange(len(values))), reach)
-
-    def displacements(self, length: int) -> np.ndarray:
-        """(T - length,) metres that curves over so many frames displace at most in between."""
-        inside = np.unique(np.linspace(1, length - 1, _SAMPLES).round().astype(int))
-        ends = (self.values[:-length], self.values[length:])
-        slopes_ = (self.slopes[:-length] * length, self.slopes[length:] * length)
-        worst = np.zeros(len(ends[0]))
-        for frame in inside[(inside > 0) & (inside < length)].tolist():
-            curve = _hermite(ends, slopes_, frame / length)
-            there = self.values[frame : frame + len(worst)]
-            turns = curve[:, :4] / np.linalg.norm(curve[:, :4], axis=1, keepdims=True)
-            chords = np.linalg.norm(turns - there[:, :4], axis=1)
-            angles = 4 * np.arcsin(np.minimum(chords / 2, 1.0))
-            shifts = np.linalg.norm(curve[:, 4:] - there[:, 4:], axis=1)
-            worst = np.maximum(worst, self.reach * angles + shifts)
-        return worst
-
-
-@dataclass(frozen=True, eq=False)
-class _Chains:
-    """All curves between keys of one joint.
-
-    Attributes:
-        lengths: (N,) frames that curves span, rising from 1.
-        displacements: (T, N) metres, of the curve of each length that ends at a frame; infinite
-            where it would begin before the motion or lead over a frame that must be a key.
-    """
-
-    lengths: np.ndarray
-    displacements: np.ndarray
-
-    @classmethod
-    def of(cls, track: _Track, fixed: np.ndarray, lengths: np.ndarray) -> "_Chains":
-        """Those of ``track``, with the frames ``fixed`` (T,) as keys."""
-        displacements = np.full((len(fixed), len(lengths)), np.inf)
-        for column, length in enumerate(lengths.tolist()):
-            displacements[length:, column] = track.displacements(length)
-        frames = np.arange(len(fixed))
-        last_fixed = np.maximum.accumulate(np.where(np.r_[False, fixed[:-1]], frames - 1, 0))
-        displacements[frames[:, None] - lengths < last_fixed[:, None]] = np.inf
-        return cls(lengths, displacements)
-
-    def fewest(self, allowance: float) -> np.ndarray:
-        """(T,) bool, the keys of the shortest chain of curves that displace by ``allowance`` m."""
-        share = self.displacements / allowance
-        costs = np.where(share <= 1, 1 + _TIE * share, np.inf)
-        costs[1:, 0] = np.minimum(costs[1:, 0], 1 + _TIE)
-        best, via = np.zeros(len(costs)), np.zeros(len(costs), int)
-        for frame in range(1, len(costs)):
-            reachable = int(np.searchsorted(self.lengths, frame, "right"))
-            totals = best[frame - self.lengths[:reachable]] + costs[frame, :reachable]
-            via[frame] = self.lengths[int(np.argmin(totals))]
-            best[frame] = totals.min()
-        keyed, frame = np.zeros(len(costs), bool), len(costs) - 1
-        while frame > 0:
-            keyed[frame], frame = True, frame - via[frame]
-        keyed[0] = True
-        return keyed
-
-
-def _lengths(rate: float, frames: int) -> np.ndarray:
-    longest = min(max(2.0, _LONGEST_S * rate), max(frames - 1, 1))
-    return np.unique(np.geomspace(1, longest, _LENGTHS).round().astype(int))
-
-
-def _hermite(ends: tuple, slopes: tuple, share: float) -> np.ndarray:
-    """Cubics between two ends with slopes over the whole way, at a share of it."""
-    u = share
-    return (
-        (1 + 2 * u) * (1 - u) ** 2 * ends[0] + u**2 * (3 - 2 * u) * ends[1]
-        + u * (1 - u) ** 2 * slopes[0] - u**2 * (1 - u) * slopes[1]
-    )  # fmt: skip
+def _tracks(body: Body, motions: np.ndarray, progress: Progress) -> Iterator[Track]:
+    """Of every joint of motions (T, J, 3, 4)."""
+    reaches = np.maximum(_reaches(body), _LEAST_REACH_M)
+    progress.begin("keys", len(reaches))
+    for joint, reach in enumerate(reaches.tolist()):
+        yield Track.of(motions[:, joint], reach)
+        progress.advance(None)
 
 
 def _reaches(body: Body) -> np.ndarray:

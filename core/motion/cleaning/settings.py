@@ -5,8 +5,9 @@ from fractions import Fraction
 
 from ...errors import MocapError
 
-FILTERS = ("refit", "butterworth", "one-euro")
-_USUAL_HZ = {"refit": 6.0, "butterworth": 6.0, "one-euro": 3.0}
+REFIT = "refit"
+FILTERS = (REFIT, "butterworth", "one-euro")
+_USUAL_HZ = {REFIT: 6.0, "butterworth": 6.0, "one-euro": 3.0}
 _MOST_OF_RATE = 0.4
 """A usual cut-off is lowered to this share of the frame rate."""
 
@@ -26,7 +27,7 @@ class CleanSettings:
         MocapError: an unknown filter, or a number that is not above 0.
     """
 
-    filter: str = "refit"
+    filter: str = REFIT
     smooth_hz: float | None = None
     contacts: bool = True
     keys_mm: float | None = None

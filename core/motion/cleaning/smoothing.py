@@ -13,12 +13,13 @@ import numpy as np
 
 from ...body.body import Body, DofKind
 from ...body.kinematics import clamped
+from ...progress import Progress
 from ..motion import Motion
-from .filters import FILTERS
+from .filters import OTHER_FILTERS
 from .joint_rotations import JointRotation
 from .paths import bridged_values, smoothed_rotations
 from .refit import Refit
-from .settings import CleanSettings
+from .settings import REFIT, CleanSettings
 
 _SURE_M, _CONFIDENT_M = 0.012, 0.05
 _LEAST_WEIGHT = 1e-3
@@ -28,10 +29,10 @@ _FEWEST = 3
 """Frames that have an acceleration."""
 
 
-def smoothed(body: Body, motion: Motion, settings: CleanSettings) -> np.ndarray:
+def smoothed(body: Body, motion: Motion, settings: CleanSettings, progress: Progress) -> np.ndarray:
     """(T, D) the raw poses of ``motion`` of ``body``, smoothed, gaps bridged, within the limits.
 
-    Locked frames are as they were, to the bit.
+    Locked frames are as they were, to the bit. ``progress`` is told how far it is.
 
     Raises:
         MocapError: a cut-off that is too high for the motion's rate.
@@ -40,10 +41,13 @@ def smoothed(body: Body, motion: Motion, settings: CleanSettings) -> np.ndarray:
     weights = frame_weights(motion.confidence_raw)
     cut_off = settings.cut_off(motion.rate)
     refit = Refit(float(motion.rate), cut_off, weights, gaps, motion.locked)
-    poses = _filtered(body, motion.pose_raw, gaps, refit.curve)
-    if settings.filter != "refit":
+    progress.begin("smoothing", len(body.joint_names) * (1 + (settings.filter != REFIT)))
+    poses = _filtered(body, motion.pose_raw, gaps, refit.curve, progress)
+    if settings.filter != REFIT:
         known = np.where(gaps[:, None], poses, motion.pose_raw)
-        poses = _filtered(body, known, np.zeros_like(gaps), _pinning(settings.filter, refit))
+        poses = _filtered(
+            body, known, np.zeros_like(gaps), _pinning(settings.filter, refit), progress
+        )
     poses = clamped(body, poses)
     poses[motion.locked] = motion.pose_raw[motion.locked]
     return poses
@@ -65,12 +69,14 @@ def _pinning(name: str, refit: Refit) -> Curve:
     """The filter of that name, with values that are held."""
 
     def curve(values: np.ndarray, fastest: float) -> np.ndarray:
-        return refit.pinned(FILTERS[name](values, refit.rate, refit.cut_off), values)
+        return refit.pinned(OTHER_FILTERS[name](values, refit.rate, refit.cut_off), values)
 
     return curve
 
 
-def _filtered(body: Body, poses: np.ndarray, gaps: np.ndarray, curve: Curve) -> np.ndarray:
+def _filtered(
+    body: Body, poses: np.ndarray, gaps: np.ndarray, curve: Curve, progress: Progress
+) -> np.ndarray:
     """(T, D) poses (T, D) with every joint's moves and turns filtered."""
     found = bridged_values(poses, gaps)
     if len(poses) < _FEWEST:
@@ -89,4 +95,5 @@ def _filtered(body: Body, poses: np.ndarray, gaps: np.ndarray, curve: Curve) -> 
         elif len(rows):
             raw = rotation.rotations(found[:, rows])
             found[:, rows] = rotation.nearest(smoothed_rotations(raw, gaps, turned), found[:, rows])
+        progress.advance(None)
     return found

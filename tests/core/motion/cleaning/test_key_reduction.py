@@ -5,7 +5,7 @@ import pytest
 from moving import motion_with, swaying
 from scipy.spatial.transform import Rotation
 from silhouette_mocap.core.body.kinematics import carried_points, chained, joint_motions, points
-from silhouette_mocap.core.motion.cleaning import key_reduction
+from silhouette_mocap.core.motion.cleaning.key_chains import Chains, Track
 from silhouette_mocap.core.motion.cleaning.key_reduction import reduced_keys
 from silhouette_mocap.core.motion.curves import followed, quaternions
 from silhouette_mocap.core.progress import SILENCE
@@ -71,9 +71,9 @@ def test_no_chain_of_curves_has_fewer_keys():
     vectors = np.cumsum(rng.normal(0, 0.05, (9, 3)), axis=0)
     motions = np.zeros((9, 3, 4))
     motions[..., :3] = Rotation.from_rotvec(vectors).as_matrix()
-    track = key_reduction._Track.of(motions, 0.5)
+    track = Track.of(motions, 0.5)
     ends = np.isin(np.arange(9), (0, 8))
-    chains = key_reduction._Chains.of(track, ends, np.arange(1, 9))
+    chains = Chains.of([track], ends, np.arange(1, 9))
     allowance = 0.02
 
     def displaced(inner):
@@ -86,7 +86,7 @@ def test_no_chain_of_curves_has_fewer_keys():
         for count in range(8)
         if any(displaced(inner) <= allowance for inner in combinations(range(1, 8), count))
     )
-    found = np.flatnonzero(chains.fewest(allowance))
+    found = np.flatnonzero(chains.fewest(allowance)[:, 0])
     assert 1 <= fewest <= 6
     assert len(found) == fewest + 2 and displaced(found[1:-1]) <= allowance
 

@@ -4,11 +4,17 @@ from moving import motion_with, rms, swaying
 from silhouette_mocap.core.body.kinematics import clamped, points, within_limits
 from silhouette_mocap.core.errors import MocapError
 from silhouette_mocap.core.motion.cleaning.settings import FILTERS, CleanSettings
-from silhouette_mocap.core.motion.cleaning.smoothing import frame_weights, smoothed
+from silhouette_mocap.core.motion.cleaning.smoothing import frame_weights
+from silhouette_mocap.core.motion.cleaning.smoothing import smoothed as smoothed_with
+from silhouette_mocap.core.progress import SILENCE
 from synthetic import dof_values, small_body
 
 BODY = small_body("performer")
 RATE = 30.0
+
+
+def smoothed(body, motion, settings):
+    return smoothed_with(body, motion, settings, SILENCE)
 
 
 @pytest.fixture(scope="module")
