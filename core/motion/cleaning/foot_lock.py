@@ -110,7 +110,6 @@ class FootLock:
         were ``stopped`` before among them.
         """
         places, slopes = self._moved_soles(self._changed(change))
-        slopes[self.locked] = 0.0
         band = BlockBand.zero(*change.shape)
         band.add_smoothness(self._stiffness, self._penalty)
         held = self.locked[:, None] * _HELD * self._stiffness

@@ -6,12 +6,16 @@ from silhouette_mocap.core.motion.cleaning.filters import butterworth, one_euro
 
 
 @pytest.mark.parametrize("rate", [30.0, 120.0])
-def test_butterworth_halves_a_sine_at_the_cut_off_and_does_not_delay_it(rate):
+@pytest.mark.parametrize("frequency", [3.0, 5.0, 7.0])
+def test_butterworth_leaves_what_its_second_order_run_twice_leaves_and_does_not_delay(
+    rate, frequency
+):
     time = np.arange(round(20 * rate)) / rate
-    sine = np.sin(2 * np.pi * 5.0 * time)[:, None]
+    sine = np.sin(2 * np.pi * frequency * time)[:, None]
+    ratio = np.tan(np.pi * frequency / rate) / np.tan(np.pi * 5.0 / rate)
     found = butterworth(sine, rate, 5.0)
     middle = slice(len(time) // 4, -len(time) // 4)
-    assert np.abs(found - sine / 2)[middle].max() < 0.01
+    assert np.abs(found - sine / (1 + ratio**4))[middle].max() < 0.01
 
 
 @pytest.mark.parametrize("count", [3, 7])

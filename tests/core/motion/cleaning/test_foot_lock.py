@@ -1,9 +1,11 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from moving import rms, stepping
 from silhouette_mocap.core.body.kinematics import joint_transforms, within_limits
 from silhouette_mocap.core.motion.cleaning.block_band import BlockBand
-from silhouette_mocap.core.motion.cleaning.contacts import slides, touching
+from silhouette_mocap.core.motion.cleaning.contacts import slides, stretches, touching
 from silhouette_mocap.core.motion.cleaning.foot_lock import Floor, FootLock
 from silhouette_mocap.core.motion.cleaning.soles import Soles
 from silhouette_mocap.core.progress import SILENCE
@@ -31,6 +33,11 @@ def drifting(body=BODY, rate=RATE):
     return poses, touched
 
 
+def standing(touched):
+    """Points of soles and the stretches in which they touch the floor."""
+    return [(p, run) for p in range(touched.shape[1]) for run in stretches(touched[:, p])]
+
+
 @pytest.fixture(scope="module")
 def held():
     """Before, after and which soles stand."""
@@ -43,6 +50,15 @@ def test_what_stands_slides_less_than_a_tenth_of_a_millimetre(held):
     before, after, touched = held
     assert slides(soles_in(before), touched).max() > 0.02
     assert slides(soles_in(after), touched).max() < 1e-4
+
+
+def test_what_stands_neither_rises_nor_sinks(held):
+    before, after, touched = held
+    rises = [
+        max(np.ptp(soles_in(poses)[run, point, 2]) for point, run in standing(touched))
+        for poses in (before, after)
+    ]
+    assert rises[1] < 1e-4 < 0.01 < rises[0]
 
 
 def test_no_sole_is_below_the_floor_and_limits_hold(held):
@@ -88,13 +104,37 @@ def test_the_change_is_gone_half_a_second_after_a_contact():
     assert change[:20].max() > 0.01 and change[35:].max() < 0.1 * change[:20].max()
 
 
+def test_a_foot_that_swings_through_the_floor_is_lifted_over_it():
+    poses, touched = drifting()
+    poses[:, 2] -= 0.03
+    lock = FootLock(BODY, SOLES, poses, RATE, np.zeros(len(poses), bool))
+    after = lock.solved(Floor(0.0, touched & False), SILENCE)
+    assert soles_in(poses)[..., 2].min() < -0.03
+    assert -1e-4 < soles_in(after)[..., 2].min() < 1e-3
+    assert np.abs(after[:, 2] - poses[:, 2]).max() < 0.03
+
+
+def test_ankles_that_bend_no_further_leave_the_rest_to_others():
+    ankle, count = BODY.dofs.names.index("left_ankle_flexion"), 60
+    limits = BODY.dofs.limits.copy()
+    limits[ankle] = 0.25, 0.35
+    stiff = replace(BODY, dofs=replace(BODY.dofs, limits=limits))
+    poses = np.repeat(stepping(BODY, RATE)[0][:1], count, axis=0)
+    poses[:, 1] = -0.2 * np.sin(2 * np.pi * np.arange(count) / 60) ** 2
+    lock = FootLock(stiff, SOLES, poses, RATE, np.zeros(count, bool))
+    everywhere = np.ones((count, len(SOLES.feet)), bool)
+    after = lock.solved(Floor(-0.1, everywhere), SILENCE)
+    assert after[:, ankle].min() == pytest.approx(0.25) and within_limits(stiff, after).all()
+    assert slides(soles_in(after), everywhere).max() < 1e-3
+
+
 def test_locked_frames_stay_to_the_bit_and_the_feet_still_stand_still():
     poses, touched = drifting()
     locked = np.arange(len(poses)) == 15
     lock = FootLock(BODY, SOLES, poses, RATE, locked)
     found = lock.solved(Floor(-0.05, touched), SILENCE)
     assert np.array_equal(found[locked], poses[locked])
-    assert slides(soles_in(found), touched).max() < 1e-3
+    assert slides(soles_in(found), touched).max() < 1e-4
 
 
 @pytest.mark.parametrize(("name", "rate"), [("sixteen_segment", 30.0), ("performer", 120.0)])
@@ -106,15 +146,15 @@ def test_other_bodies_and_rates_are_held_too(name, rate):
     assert slides(after, touched).max() < 1e-3 and after[..., 2].min() > -1e-3
 
 
-@pytest.mark.parametrize("name", ["performer", "sixteen_segment"])
-def test_soles_lie_on_the_floor_of_the_rest_pose_heel_to_tip(name):
+@pytest.mark.parametrize(("name", "ends"), [("performer", 3), ("sixteen_segment", 2)])
+def test_soles_lie_on_the_floor_of_the_rest_pose_heel_to_tip(name, ends):
     body = small_body(name)
     soles = Soles.of(body)
     places = soles_in(body.rest_pose[None], body)[0]
     assert np.abs(places[:, 2]).max() < 1e-3
     for foot, sign in ((0, 1), (1, -1)):
         own = places[soles.feet == foot]
-        assert (sign * own[:, 0] > 0.05).all()
+        assert len(own) == ends and (sign * own[:, 0] > 0.05).all()
         assert (np.diff(own[:, 1]) < -0.03).all()
         assert 0.2 < np.ptp(own[:, 1]) < 0.32
 
