@@ -114,8 +114,8 @@ def fit(take: Take, request: FitRequest, progress: Progress) -> FitResult:
             return write_results(outcome, request.out, progress)
 
     try:
-        tracked(outcome, request.search, progress)
-        outcome = replace(outcome, complete=True)
+        findings = tracked(outcome, request.search, progress)
+        outcome = replace(outcome, complete=True, findings=findings)
         result = save()
     except BaseException:
         if len(outcome.journal):

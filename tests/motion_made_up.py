@@ -55,6 +55,7 @@ def report_of(motion: Motion, **changes) -> dict:
             }
             for name in names
         },
+        "camera_findings": [],
         "iou_per_camera": dict.fromkeys(names, 0.8125),
         "contour_px": 1.5,
         "seconds_per_frame": [0.5] * len(motion.frames),

@@ -9,6 +9,7 @@ from collections.abc import Iterable, Iterator, Sequence
 import numpy as np
 
 from ..ahead import Behind, made_ahead
+from ..fitting.camera_health import CameraFinding, camera_findings
 from ..fitting.search import Search
 from ..fitting.second_look import Course, looked_again
 from ..fitting.tracking import FrameFit, History, track
@@ -23,8 +24,11 @@ Silhouettes = tuple[Silhouette, ...]
 """One frame's, camera by camera."""
 
 
-def tracked(outcome: Outcome, search: Search, progress: Progress) -> None:
+def tracked(outcome: Outcome, search: Search, progress: Progress) -> tuple[CameraFinding, ...]:
     """Puts into the journal of ``outcome`` what is not in it yet.
+
+    Returns:
+        What is wrong with the cameras.
 
     Raises:
         MocapError: footage or locked poses at fault.
@@ -32,6 +36,7 @@ def tracked(outcome: Outcome, search: Search, progress: Progress) -> None:
     passes = _Passes(outcome, search, progress)
     passes.first()
     passes.second()
+    return passes.cameras()
 
 
 class _Passes:
@@ -74,6 +79,14 @@ class _Passes:
             for changed in looked_again(self.tracker, course, self._read):
                 self._keep(changed, tell=False)
                 self.progress.advance(None)
+
+    def cameras(self) -> tuple[CameraFinding, ...]:
+        """What is wrong with the cameras, by all fits."""
+        self.progress.begin("cameras", 1)
+        evaluator, fits = self.tracker.evaluator, self.journal.fits()
+        found = camera_findings(evaluator, fits, self.views.silhouettes)
+        self.progress.advance(None)
+        return found
 
     def _read(self, frames: Iterable[int]) -> Iterator[tuple[int, Silhouettes]]:
         """Numbers and silhouettes of ``frames``, their contours found."""

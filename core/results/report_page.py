@@ -139,6 +139,7 @@ def _cameras(motion: Motion, report: dict) -> Html:
         )
     return joined(
         (
+            bullets([finding["text"] for finding in report["camera_findings"]]),
             table(headings, rows),
             element("p", "XOR px and residuals count working px.", class_="soft"),
         )

@@ -4,7 +4,7 @@ import hashlib
 import json
 from collections import Counter
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +13,7 @@ from ..body.file import write_body
 from ..cameras.arrangement import millimetres_per_pixel
 from ..cameras.camera import Camera
 from ..errors import MocapError
+from ..fitting.camera_health import CameraFinding
 from ..footage.pictures import read_picture
 from ..footage.video_writing import write_video
 from ..motion.motion import Motion, read_motion, write_motion
@@ -60,6 +61,7 @@ class Outcome:
         settings: what was asked for beside the take.
         choice: what draws.
         complete: whether all frames were tracked, and looked at again where in doubt.
+        findings: what is wrong with the cameras, as far as it is known.
     """
 
     take: Take
@@ -68,6 +70,7 @@ class Outcome:
     settings: dict[str, object]
     choice: Choice
     complete: bool = False
+    findings: tuple[CameraFinding, ...] = ()
 
 
 def check_spared(take: Take, folder: Path) -> None:
@@ -110,6 +113,8 @@ def write_results(outcome: Outcome, folder: Path, progress: Progress) -> FitResu
     write_motion(files[0], motion)
     write_body(files[1], start.body)
     _tell_files(outcome, files[0], tell)
+    for finding in outcome.findings:
+        tell(finding.text)
     report = {
         "take": take.name,
         "finished": outcome.complete,
@@ -122,6 +127,7 @@ def write_results(outcome: Outcome, folder: Path, progress: Progress) -> FitResu
         "evaluators": dict(Counter(outcome.journal.evaluators())),
         "versions": versions(),
         "cameras": _camera_facts(views, motion),
+        "camera_findings": [asdict(finding) for finding in outcome.findings],
         "surface": drawn_surface(start.body, views.cameras, start.pose),
         **fit_quality(motion, fits),
         "error_mm": _error(take, motion, tell),
