@@ -15,7 +15,7 @@ import numpy as np
 
 from ...core.body.body import Body, DofKind
 from ...core.body.kinematics import joint_motions
-from ...core.motion.curves import quaternions, slopes
+from ...core.motion.curves import key_slopes, quaternions
 from .armature import bone_names
 
 
@@ -60,16 +60,15 @@ def add_action(armature: bpy.types.Object, body: Body, name: str, keys: Keys) ->
         if joint in moved:
             curves["location"] = moves[:, joint, :, 3] @ rest
         for channel, values in curves.items():
-            slope = slopes(values, keys.frames)
             for index in range(values.shape[1]):
                 curve = bag.fcurves.new(f"{path}.{channel}", index=index)
                 curve.group = group
-                _key(curve, keys, keys.keyed[:, joint], values[:, index], slope[:, index])
+                _key(curve, keys, keys.keyed[:, joint], values[:, index])
     return action
 
 
-def _key(curve: bpy.types.FCurve, keys: Keys, keyed: np.ndarray, values, slope) -> None:
-    """Adds the keys of one component (T,), joined by lines or through their slopes (T,)."""
+def _key(curve: bpy.types.FCurve, keys: Keys, keyed: np.ndarray, values: np.ndarray) -> None:
+    """Adds the keys of one component (T,)."""
     frames, points = keys.frames[keyed], curve.keyframe_points
     places = np.column_stack([frames, values[keyed]])
     points.add(len(frames))
@@ -80,7 +79,8 @@ def _key(curve: bpy.types.FCurve, keys: Keys, keyed: np.ndarray, values, slope) 
     plain, extreme = (_number(bpy.types.Keyframe, "type", t) for t in ("KEYFRAME", "EXTREME"))
     points.foreach_set("type", np.where(keys.locked[keyed], extreme, plain).astype(np.int32))
     if joined == "BEZIER":
-        _set_handles(points, places, slope[keyed])
+        slope = key_slopes(values[:, None], np.flatnonzero(keyed))[:, 0]
+        _set_handles(points, places, slope / np.gradient(keys.frames)[keyed])
     curve.update()
 
 

@@ -1,8 +1,9 @@
 """The fewest keys of one joint whose curves stay near its motion.
 
-A curve (`curves`) may lead from one key to the next if it displaces nothing by more than an
-allowance. Of all chains of such curves the shortest is found by dynamic programming (after Perez
-and Vidal: Optimum polygonal approximation of digitized curves, 1994).
+A curve (`curves`), with the slopes of the motion itself, may lead from one key to the next if it
+displaces nothing by more than an allowance. Of all chains of such curves the shortest is found by
+dynamic programming (after Perez and Vidal: Optimum polygonal approximation of digitized curves,
+1994).
 """
 
 from collections.abc import Iterable
@@ -10,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..curves import components, slopes
+from ..curves import components, hermite, slopes
 
 _LONGEST_S, _LENGTHS, _SAMPLES = 2.0, 40, 12
 """Of a curve: seconds, how many lengths are tried, and in how many frames it is compared."""
@@ -36,7 +37,7 @@ class Track:
     def of(cls, motions: np.ndarray, reach: float) -> "Track":
         """Of a joint's own motions (T, 3, 4)."""
         values = components(motions)
-        return cls(values, slopes(values, np.arange(len(values))), reach)
+        return cls(values, slopes(values), reach)
 
     def displacements(self, length: int) -> np.ndarray:
         """(T - length,) metres that curves over so many frames displace at most in between."""
@@ -45,7 +46,7 @@ class Track:
         slopes_ = (self.slopes[:-length] * length, self.slopes[length:] * length)
         worst = np.zeros(len(ends[0]))
         for frame in inside[(inside > 0) & (inside < length)].tolist():
-            curve = _hermite(ends, slopes_, frame / length)
+            curve = hermite(ends, slopes_, frame / length)
             there = self.values[frame : frame + len(worst)]
             turns = curve[:, :4] / np.linalg.norm(curve[:, :4], axis=1, keepdims=True)
             chords = np.linalg.norm(turns - there[:, :4], axis=1)
@@ -111,12 +112,3 @@ def curve_lengths(rate: float, frames: int) -> np.ndarray:
     """(N,) frames that curves may span, rising from 1, of a motion of so many frames."""
     longest = min(max(2.0, _LONGEST_S * rate), max(frames - 1, 1))
     return np.unique(np.geomspace(1, longest, _LENGTHS).round().astype(int))
-
-
-def _hermite(ends: tuple, slopes: tuple, share: float) -> np.ndarray:
-    """Cubics between two ends with slopes over the whole way, at a share of it."""
-    u = share
-    return (
-        (1 + 2 * u) * (1 - u) ** 2 * ends[0] + u**2 * (3 - 2 * u) * ends[1]
-        + u * (1 - u) ** 2 * slopes[0] - u**2 * (1 - u) * slopes[1]
-    )  # fmt: skip
