@@ -2,11 +2,14 @@
 
 from collections.abc import Sequence
 
+import cv2
 import numpy as np
 
 from ..cameras.camera import Camera
 from ..silhouettes.silhouette import Silhouette
 from .evaluator import WeightMaps
+
+_FAR = 8
 
 
 def xor_weight_maps(silhouettes: Sequence[Silhouette]) -> WeightMaps:
@@ -22,6 +25,36 @@ def xor_weight_maps(silhouettes: Sequence[Silhouette]) -> WeightMaps:
         maps.append(weights)
         constants.append(np.count_nonzero(silhouette.foreground & silhouette.observed))
     return WeightMaps(tuple(maps), np.array(constants, np.int64))
+
+
+def drawing_weight_maps(
+    silhouettes: Sequence[Silhouette],
+    covered: Sequence[np.ndarray],
+    reaches_px: Sequence[float],
+) -> WeightMaps:
+    """Maps that draw a part from afar to foreground that the rest of the body leaves uncovered.
+
+    That foreground counts -8 per pixel. The background rises from 0 beside it to 8 at the view's
+    reach, so that a part that comes near is worth more than one that hides before the body; under
+    the XOR energy both are the same until they overlap.
+
+    Args:
+        silhouettes: V observed ones.
+        covered: V pictures (H, W) of what the rest of the body covers.
+        reaches_px: V distances that are far.
+    """
+    maps = []
+    for silhouette, rest, reach in zip(silhouettes, covered, reaches_px, strict=True):
+        bare = silhouette.foreground & silhouette.observed & ~rest
+        weights = np.full(bare.shape, _FAR, np.int16)
+        if bare.any():
+            distances = cv2.distanceTransform((~bare).view(np.uint8), cv2.DIST_L2, 3)
+            np.minimum(distances * (_FAR / reach), _FAR, out=distances)
+            weights = distances.astype(np.int16)
+        weights[bare] = -_FAR
+        weights[(silhouette.foreground & ~bare) | ~silhouette.observed] = 0
+        maps.append(weights)
+    return WeightMaps(tuple(maps), np.zeros(len(maps), np.int64))
 
 
 def halved(maps: WeightMaps) -> WeightMaps:

@@ -15,14 +15,17 @@ import numpy as np
 from ..body.body import Body, Part
 from ..body.kinematics import clamped
 from ..cameras.camera import Camera
-from ..energy.weight_maps import xor_weight_maps
+from ..energy.evaluator import Weights
+from ..energy.weight_maps import drawing_weight_maps, xor_weight_maps
 from ..silhouettes.silhouette import Silhouette
 from .contour_descent import Descent, DescentSettings
 from .contour_targets import ContourTargets
-from .limb_search import LimbCost, LimbSettings, better_limbs
-from .lumps import Lumps
+from .limb_search import LimbCost, LimbSettings, better_limbs, limbs_elsewhere
+from .limbs import LIMB_NAMES, limb_segments
+from .lumps import Lumps, seen_area
 from .part_search import rest_prior
-from .scores import LIMB_NAMES, limb_segments, metres_at
+from .recovery import restarts
+from .scores import metres_at
 from .tracker import LEAST_AREA, EvaluatorFactory, Past, PoseFit, Tally
 from .view_trust import view_weights
 
@@ -32,6 +35,15 @@ _USUAL = 1.4
 """Times what lumps there usually are, that are nothing to worry about."""
 _LITTLE_M2 = 0.006
 """Lumps in all views together that raise no doubt about a limb."""
+_BESIDE = 0.45
+"""Px that differ, as a share of silhouettes and model together, where the body is lost."""
+_RESTARTS = 4
+"""Descents from the visual hull."""
+_LEAP_RAD = 0.5
+"""From what is expected, that a limb has hardly moved by."""
+_DROPPED, _ELSEWHERE = 0.6, 0.4
+"""Share of a limb's visible area that is gone where the silhouettes have dropped it, and share of
+that area that may be unexplained foreground."""
 
 
 @dataclass(frozen=True)
@@ -46,6 +58,8 @@ class ContourSettings:
         again: share of the reach and of the steps that these descents have.
         prior_share: energy of one standard deviation from the rest pose, as a share of the
             silhouettes' area, when ends are compared.
+        drawn_from_m: where limbs in doubt are drawn from to foreground left uncovered.
+        pull_rad: standard deviation of a limb's angle from what is expected, likewise.
         views_weighed: whether views that disagree with the others count less.
     """
 
@@ -55,6 +69,8 @@ class ContourSettings:
     limbs: LimbSettings | None = field(default_factory=LimbSettings)
     again: float = 0.5
     prior_share: float = 1e-3
+    drawn_from_m: float = 0.15
+    pull_rad: float = 0.5
     views_weighed: bool = True
 
 
@@ -84,6 +100,7 @@ class ContourTracker:
             for part in body.parts
             if part.role == "limb" or part.name == "head"
         ]
+        self.limb_dofs = [dof for _, part in self.sought for dof in part.dofs]
 
     def fit(self, silhouettes: tuple[Silhouette, ...], past: Past) -> PoseFit:
         """The pose that explains the V silhouettes best.
@@ -99,7 +116,8 @@ class _FrameSearch:
     def __init__(self, tracker: ContourTracker, silhouettes: Sequence[Silhouette], past: Past):
         self.tracker, self.settings, self.body = tracker, tracker.settings, tracker.body
         self.silhouettes, self.evaluator = silhouettes, tracker.evaluator
-        self.last, self.predicted = clamped(tracker.body, np.stack([past.last, past.predicted]))
+        starts = np.stack([past.last, past.predicted, past.trusted])
+        self.last, self.predicted, self.trusted = clamped(tracker.body, starts)
         maps = xor_weight_maps(silhouettes)
         self.weights = self.evaluator.prepared(maps)
         covered = [np.count_nonzero(picture) for picture in self.evaluator.silhouettes(self.last)]
@@ -107,7 +125,9 @@ class _FrameSearch:
         observed_px = int(maps.constants.sum())
         self.shown = observed_px >= LEAST_AREA * sum(covered)
         self.prior_px = self.settings.prior_share * observed_px
-        self.tally, self.usual = Tally(), past.usual
+        self.tally, self.usual, self.patient = Tally(), past.usual, past.patient
+        self.held: dict[int, tuple[int, ...]] = {}
+        self.drawn: list[int] | None = None
         self.metres = metres_at(self.evaluator, self.last)
         self.trust = np.ones(len(silhouettes))
 
@@ -118,10 +138,11 @@ class _FrameSearch:
         self._aim()
         self._keep_best(np.stack([self.predicted, self.last]))
         self._trust_views()
-        self._keep_best(self._descended(self.predicted, self.predicted, 1.0)[None])
+        self._keep_best(self._descended(self.predicted, self.trusted, 1.0)[None])
         if self._trust_views() > _TRUST_CHANGED:
             self._go_on_from([self.pose])
         if self.settings.limbs is not None:
+            self._recover_body()
             self._recover()
         return PoseFit(self.pose, int(self.apart_px.sum()), self.tally)
 
@@ -144,21 +165,77 @@ class _FrameSearch:
         self.targets.shares = self.trust
         return float(np.abs(self.trust - before).max())
 
+    def _recover_body(self) -> None:
+        """Begins anew from the visual hull where the body lies beside most silhouettes."""
+        apart = float(self.apart_px @ self.trust) / max(float(self.shown_px @ self.trust), 1.0)
+        if apart < _BESIDE:
+            return
+        starts = clamped(
+            self.body, restarts(self.body, self.tracker.cameras, self.silhouettes, self.pose)
+        )
+        if not len(starts):
+            return
+        self.trust = np.ones(len(self.silhouettes))
+        self.targets.shares = self.trust
+        costs = self.evaluator.energies(self.weights, starts).sum(axis=1)
+        chosen = starts[np.argsort(costs, kind="stable")[:_RESTARTS]]
+        ends = [self._descended(start, start, 2.0) for start in chosen]
+        ends = [self._descended(end, end, 1.0) for end in ends]
+        self._keep_best(np.stack([self.pose, *ends]))
+        self._trust_views()
+        self.trusted = self.predicted = self.last = self.pose
+
     def _recover(self) -> None:
         """The other start where lumps tell that something is amiss, then each limb by itself."""
         doubts = self._doubts()
+        self._hold(doubts)
         if doubts.any():
-            self._keep_best(np.stack([self.pose, self._descended(self.last, self.predicted, 1.0)]))
+            others = [self._descended(self.last, self.trusted, 1.0)] if not self.held else []
+            self._keep_best(np.stack([self.pose, *others]))
             doubts = self._doubts()
         for limb, part in self.tracker.sought:
-            self._seek(part, bool(doubts[limb]))
+            if limb not in self.held:
+                self._seek(part, bool(doubts[limb]))
+
+    def _lumps(self, pose: np.ndarray) -> np.ndarray:
+        """(2, 5) `Lumps.of_limbs` of `LIMB_NAMES` in a pose (D,)."""
+        lumps = Lumps.of(self.evaluator.silhouettes(pose), self.silhouettes, self.metres)
+        return lumps.of_limbs(self.evaluator, pose, limb_segments(self.body), self.trust)
 
     def _doubts(self) -> np.ndarray:
         """(5,) bool, whether there is more than usual that each of `LIMB_NAMES` may explain."""
-        lumps = Lumps.of(self.evaluator.silhouettes(self.pose), self.silhouettes, self.metres)
-        chosen = limb_segments(self.body)
-        areas = lumps.of_limbs(self.evaluator, self.pose, chosen, self.trust)
-        return areas > _USUAL * self.usual + _LITTLE_M2
+        return self._lumps(self.pose).sum(axis=0) > _USUAL * self.usual + _LITTLE_M2
+
+    def _hold(self, doubts: np.ndarray) -> None:
+        """Holds limbs that the silhouettes have dropped where they are expected.
+
+        Those are gone from where they were last seen, and nothing is there that they could have
+        become: hidden before the body they would explain the silhouettes best, and be lost.
+        """
+        leaps = np.abs(self.pose - self.trusted)
+        odd = [
+            (limb, part)
+            for limb, part in self.tracker.sought
+            if part.role == "limb" and self.patient[limb]
+            if doubts[limb] or leaps[list(part.dofs)].max() > _LEAP_RAD
+        ]
+        if not odd:
+            return
+        pose = self.pose.copy()
+        for _, part in odd:
+            pose[list(part.dofs)] = self.trusted[list(part.dofs)]
+        missing, surplus = self._lumps(pose)
+        shares = self.trust * self.metres**2
+        for limb, part in odd:
+            if missing[limb] < _ELSEWHERE * surplus[limb]:
+                seen = seen_area(self.evaluator, pose, part.segments, shares)
+                if surplus[limb] > _DROPPED * seen:
+                    self.held[limb] = part.segments
+        if self.held:
+            gone = {segment for segments in self.held.values() for segment in segments}
+            self.drawn = [s for s in range(len(self.body.segment_names)) if s not in gone]
+            pose = self._descended(self.trusted, self.trusted, 1.0)
+            self._keep_best(pose[None])
 
     def _go_on_from(self, starts: Sequence[np.ndarray]) -> None:
         """Descends once more, from each start (D,), and keeps the best."""
@@ -169,26 +246,39 @@ class _FrameSearch:
         first, last = self.settings.reaches_m
         reaches = np.geomspace(max(first * share, last), last, round(self.settings.steps * share))
         descent = self.tracker.descent
-        return descent.run(self.targets, self.spacing_px, start, expected, reaches)
+        return descent.run(self.targets, self.spacing_px, start, expected, reaches, self.drawn)
 
     def _seek(self, part: Part, doubted: bool) -> None:
         """Looks for a limb elsewhere, and descends from the better places found."""
-        masked = self.evaluator.masked(self.weights, self.pose, part.segments)
+        settings = self.settings.limbs
+        assert settings is not None
+        cost = self._limb_cost(part, self.weights)
+        starts = np.stack([self.last, self.predicted, self.trusted])
+        if doubted and settings.everywhere:
+            others = [s for s in range(len(self.body.segment_names)) if s not in part.segments]
+            covered = self.evaluator.silhouettes(self.pose, others)
+            reaches_px = (self.settings.drawn_from_m / self.metres).tolist()
+            maps = drawing_weight_maps(self.silhouettes, covered, reaches_px)
+            rough = self._limb_cost(part, self.evaluator.prepared(maps))
+            found = limbs_elsewhere(rough, cost, starts, settings)
+        else:
+            found = better_limbs(cost, starts, settings)
+        self._go_on_from(list(found))
+
+    def _limb_cost(self, part: Part, weights: Weights) -> LimbCost:
+        masked = self.evaluator.masked(weights, self.pose, part.segments)
 
         def pixels(poses: np.ndarray) -> np.ndarray:
             return self.evaluator.energies(masked, poses, part.segments) @ self.trust
 
-        limbs = self.settings.limbs
-        assert limbs is not None
-        priors = (self.prior_px, limbs.pull_rad, self.tally)
-        cost = LimbCost(self.body, part, self.pose, self.predicted, pixels, *priors)
-        starts = np.stack([self.last, self.predicted])
-        self._go_on_from(list(better_limbs(cost, starts, limbs, doubted)))
+        priors = (self.prior_px, self.settings.pull_rad, self.tally)
+        return LimbCost(self.body, part, self.pose, self.trusted, pixels, *priors)
 
     def _keep_best(self, poses: np.ndarray) -> None:
-        """Goes on with whichever of the poses (N, D) has the lowest energy, rest prior and all."""
+        """Goes on with whichever of the poses (N, D) has the lowest energy, priors and all."""
         pixels = self.evaluator.energies(self.weights, poses)
         self.tally.evaluated += len(poses)
-        prior = self.prior_px * rest_prior(self.body, poses)
-        best = int(np.argmin(np.round(pixels @ self.trust + prior, 6)))
+        away = (poses - self.trusted)[:, self.tracker.limb_dofs] / self.settings.pull_rad
+        prior = rest_prior(self.body, poses) + (away**2).sum(axis=1)
+        best = int(np.argmin(np.round(pixels @ self.trust + self.prior_px * prior, 6)))
         self.pose, self.apart_px = poses[best], pixels[best]

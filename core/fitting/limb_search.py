@@ -32,14 +32,12 @@ class LimbSettings:
             generation after.
         spreads_rad: standard deviations of the generations.
         best: of so many poses at most that are better.
-        pull_rad: standard deviation of an angle from the expected pose.
     """
 
     near: int = 32
     everywhere: int = 400
     spreads_rad: tuple[float, ...] = (0.4, 0.15)
     best: int = 2
-    pull_rad: float = 0.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,34 +80,54 @@ class LimbCost:
         return clamped(self.body, poses)
 
 
-def better_limbs(
-    cost: LimbCost, starts: np.ndarray, settings: LimbSettings, doubted: bool
+def better_limbs(cost: LimbCost, starts: np.ndarray, settings: LimbSettings) -> np.ndarray:
+    """(n, D) poses with the limb about where ``starts`` (N, D) have it, and a lower cost.
+
+    The best come first, apart from each other.
+    """
+    own = cost.pose[None]
+    poses = cost.moved(np.concatenate([own, starts]))
+    costs, limit, rng = cost(poses), cost(own)[0], np.random.default_rng(0)
+    for spread in settings.spreads_rad:
+        poses, costs = _next_generation(cost, poses, costs, (spread, settings.near), rng)
+        if costs[0] >= limit:
+            return own[:0]
+    return _apart(cost.part, np.concatenate([own, poses[costs < limit]]), settings.best)
+
+
+def limbs_elsewhere(
+    rough: LimbCost, cost: LimbCost, starts: np.ndarray, settings: LimbSettings
 ) -> np.ndarray:
-    """(n, D) poses with the limb elsewhere and a lower cost, the best first, apart from each other.
+    """(n, D) poses of a limb that is in doubt, sought over all its range, the best first.
 
     Args:
-        cost: of the limb's poses.
+        rough: cost that tells from afar where the limb may be.
+        cost: the one that counts in the end.
         starts: (N, D) poses that tell where the limb may be.
         settings: how hard to look.
-        doubted: whether to look everywhere.
     """
-    rng = np.random.default_rng(0)
-    own = cost.pose[None]
-    own_cost = cost(own)[0]
-    poses = cost.moved(np.concatenate([own, starts]))
-    if doubted:
-        poses = np.concatenate([poses, _everywhere(cost, settings.everywhere)])
-    costs = cost(poses)
+    rng, count = np.random.default_rng(0), settings.everywhere // 2
+    poses = np.concatenate([cost.moved(starts), _everywhere(cost, settings.everywhere)])
+    costs = rough(poses)
     for spread in settings.spreads_rad:
-        count = max(settings.near, settings.everywhere // 2 if doubted else 0)
-        found = cost.moved(_scattered(cost.part, poses, spread, count, rng))
-        poses, costs = np.concatenate([poses, found]), np.concatenate([costs, cost(found)])
-        if not doubted and costs.min() >= own_cost:
-            return poses[:0]
-        order = np.argsort(costs, kind="stable")[:_ELITE]
-        poses, costs = poses[order], costs[order]
-    poses = np.concatenate([own, poses[costs < own_cost]])
-    return poses[_apart(cost.part, poses)[1 : 1 + settings.best]]
+        poses, costs = _next_generation(rough, poses, costs, (spread, count), rng)
+    costs = cost(poses)
+    poses, costs = _next_generation(cost, poses, costs, (settings.spreads_rad[-1], count), rng)
+    return _apart(cost.part, np.concatenate([cost.pose[None], poses]), settings.best)
+
+
+def _next_generation(
+    cost: LimbCost,
+    poses: np.ndarray,
+    costs: np.ndarray,
+    spread: tuple[float, int],
+    rng: np.random.Generator,
+) -> tuple[np.ndarray, np.ndarray]:
+    """The best poses and costs after so many more were laid about these, the best first."""
+    found = cost.moved(_scattered(cost.part, poses[:_ELITE], *spread, rng))
+    poses, costs = np.concatenate([poses, found]), np.concatenate([costs, cost(found)])
+    order = np.argsort(costs, kind="stable")[:_ELITE]
+    return poses[order], costs[order]
 
 
 def _everywhere(cost: LimbCost, count: int) -> np.ndarray:
@@ -133,11 +151,11 @@ def _scattered(
     return scattered
 
 
-def _apart(part: Part, poses: np.ndarray) -> list[int]:
-    """Indices of the first, and of the poses (N, D) apart from all before."""
+def _apart(part: Part, poses: np.ndarray, most: int) -> np.ndarray:
+    """Of poses (N, D) the first few after the first that are apart from all before."""
     dofs, chosen = list(part.dofs), [0]
     for index in range(1, len(poses)):
         others = poses[np.ix_(chosen, dofs)]
         if np.abs(others - poses[index, dofs]).max(axis=1).min() > _APART_RAD:
             chosen.append(index)
-    return chosen
+    return poses[chosen[1 : 1 + most]]

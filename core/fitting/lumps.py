@@ -62,15 +62,16 @@ class Lumps:
         limbs: Sequence[Sequence[int]],
         weights: np.ndarray,
     ) -> np.ndarray:
-        """(len(limbs),) m^2 of lumps that each limb may explain, summed over views by weight.
+        """(2, len(limbs)) m^2 of lumps that each limb may explain, missing and surplus.
 
-        What is missing may belong to any limb, given by its segments, that reaches there from where
-        it is in ``pose`` (D,); surplus belongs to what is drawn there. ``weights`` (V,) are those
-        of the views.
+        They are summed over views by their ``weights`` (V,). What is missing may belong to any
+        limb, given by its segments, that reaches there from where it is in ``pose`` (D,); surplus
+        belongs to what is drawn there.
         """
-        areas = np.zeros(len(limbs))
+        areas = np.zeros((2, len(limbs)))
         if not self:
             return areas
+        shares = weights * self.metres**2
         places = evaluator.transforms(pose[None])[0, :, :, 3]
         reaches = [first_joint_and_length(evaluator.body, tuple(limb)) for limb in limbs]
         joints, lengths = np.array([r[0] for r in reaches]), np.array([r[1] for r in reaches])
@@ -80,14 +81,26 @@ class Lumps:
                 roots = evaluator.cameras[view].project(places[joints])
                 apart = np.hypot(columns - roots[:, :1], rows - roots[:, 1:])
                 within = apart < (_REACHED * lengths / self.metres[view])[:, None]
-                areas += weights[view] * self.metres[view] ** 2 * within.sum(axis=1)
+                areas[0] += shares[view] * within.sum(axis=1)
         covered = [(v, np.flatnonzero(p)) for v, p in enumerate(self.surplus) if p is not None]
         for index, segments in enumerate(limbs if covered else ()):
             drawn = evaluator.silhouettes(pose, segments)
             for view, pixels in covered:
-                count = np.count_nonzero(drawn[view].ravel()[pixels])
-                areas[index] += weights[view] * self.metres[view] ** 2 * count
+                areas[1, index] += shares[view] * np.count_nonzero(drawn[view].ravel()[pixels])
         return areas
+
+
+def seen_area(
+    evaluator: Evaluator, pose: np.ndarray, segments: Sequence[int], shares: np.ndarray
+) -> float:
+    """m^2 that segments cover beside the rest of the body in a pose (D,), summed over views.
+
+    ``shares`` (V,) are m^2 of a pixel in each view, by its weight.
+    """
+    others = [s for s in range(len(evaluator.body.segment_names)) if s not in segments]
+    pictures = evaluator.silhouettes(pose), evaluator.silhouettes(pose, others)
+    counts = [np.count_nonzero(whole & ~rest) for whole, rest in zip(*pictures, strict=True)]
+    return float(shares @ counts)
 
 
 @lru_cache(maxsize=64)

@@ -1,18 +1,18 @@
 """How well a pose explains the silhouettes of a frame, view by view and limb by limb."""
 
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 
-from ..body.body import POINT_NAMES, Body
 from ..energy.evaluator import Evaluator
 from ..silhouettes.silhouette import Silhouette
+from .confidence import point_confidence
+from .limbs import limb_segments
 from .lumps import Lumps
+from .observability import Observability
 from .part_search import metres_per_pixel
 from .view_trust import view_weights
 
-LIMB_NAMES = ("torso", "left_arm", "right_arm", "left_leg", "right_leg")
 _EXPLAINED_SHARE = 0.6
 
 
@@ -28,8 +28,11 @@ class FrameScores:
             px; NaN where no view shows any of it.
         view_weights: (V,) how far each view is trusted, see `view_weights`.
         lumps: (5,) m^2 of `Lumps` that each of `LIMB_NAMES` may explain, summed over views.
+        point_spreads: (14,) m, `Observability.point_spreads`.
+        dof_spreads: (D,) rad or m, `Observability.dof_spreads`.
         confidence: (14,) see `point_confidence`.
-        lost: whether any limb's px are explained in fewer than 60 % of the views (SPEC §8).
+        lost: whether any limb's px are explained in less than 60 % of the views (SPEC §8), which
+            count by their weights.
     """
 
     xor_px: np.ndarray
@@ -38,6 +41,8 @@ class FrameScores:
     limb_residual: np.ndarray
     view_weights: np.ndarray
     lumps: np.ndarray
+    point_spreads: np.ndarray
+    dof_spreads: np.ndarray
     confidence: np.ndarray
     lost: bool
 
@@ -67,16 +72,22 @@ def frame_scores(
     limbs = [evaluator.silhouettes(pose, segments) for segments in chosen]
     residual = np.array([_figure(np.mean, distances_of(parts)) for parts in limbs])
     metres = metres_at(evaluator, pose)
-    lumps = Lumps.of(rendered, silhouettes, metres)
+    found = Lumps.of(rendered, silhouettes, metres)
+    lumps = found.of_limbs(evaluator, pose, chosen, weights).sum(axis=0)
+    seen = Observability.of(evaluator, pose, silhouettes, weights, metres)
     return FrameScores(
         xor_px=xor,
         iou=iou,
         contour_px=_figure(np.median, distances_of(rendered)),
         limb_residual=residual,
         view_weights=weights,
-        lumps=lumps.of_limbs(evaluator, pose, chosen, weights),
-        confidence=point_confidence(residual * metres.mean()),
-        lost=any(_is_unexplained(parts, silhouettes) for parts in limbs),
+        lumps=lumps,
+        point_spreads=seen.point_spreads,
+        dof_spreads=seen.dof_spreads,
+        confidence=point_confidence(
+            seen.point_spreads, residual * metres.mean(), lumps / max(weights.sum(), 1e-9)
+        ),
+        lost=any(_is_unexplained(parts, silhouettes, weights) for parts in limbs),
     )
 
 
@@ -84,41 +95,6 @@ def metres_at(evaluator: Evaluator, pose: np.ndarray) -> np.ndarray:
     """(V,) m that a pixel of each view is wide where the root is in a pose (D,)."""
     root = evaluator.transforms(pose[None])[0, 0, :, 3]
     return np.array([metres_per_pixel((camera,), root) for camera in evaluator.cameras])
-
-
-@lru_cache(maxsize=16)
-def limb_segments(body: Body) -> tuple[tuple[int, ...], ...]:
-    """The segments of each of `LIMB_NAMES`; the torso holds all that no limb moves."""
-    limbs = {part.name: part.segments for part in body.parts if part.role == "limb"}
-    moved = {segment for segments in limbs.values() for segment in segments}
-    torso = tuple(s for s in range(len(body.segment_names)) if s not in moved)
-    return (torso, *(limbs[name] for name in LIMB_NAMES[1:]))
-
-
-def point_confidence(limb_residual: np.ndarray) -> np.ndarray:
-    """(14,) probability that each point is off by less than 50 mm, not calibrated on truth.
-
-    The mean contour distance (5,) of the point's limb, in metres, is taken as the spread of a
-    two-dimensional normal error; a limb that no view shows has none.
-    """
-    spread = np.maximum(np.nan_to_num(limb_residual, nan=np.inf), 1e-4)
-    return (1.0 - np.exp(-(0.05**2) / (2.0 * spread**2)))[[limb_of(n) for n in POINT_NAMES]]
-
-
-def points_of(limb: str) -> list[int]:
-    """Indices in `POINT_NAMES` of the points that one of `LIMB_NAMES` moves."""
-    index = LIMB_NAMES.index(limb)
-    return [k for k, name in enumerate(POINT_NAMES) if limb_of(name) == index]
-
-
-def limb_of(point: str) -> int:
-    """Index in `LIMB_NAMES` of the limb that moves a point of `POINT_NAMES`."""
-    side, _, joint = point.partition("_")
-    if joint in ("elbow", "wrist"):
-        return LIMB_NAMES.index(f"{side}_arm")
-    if joint in ("knee", "ankle"):
-        return LIMB_NAMES.index(f"{side}_leg")
-    return 0
 
 
 def _differences(silhouette: Silhouette, model: np.ndarray) -> tuple[int, int]:
@@ -140,17 +116,20 @@ def contour_pairs(model: np.ndarray, observed: np.ndarray) -> np.ndarray:
     return np.concatenate(found, axis=1)
 
 
-def _is_unexplained(limb: tuple[np.ndarray, ...], silhouettes: tuple[Silhouette, ...]) -> bool:
-    """Whether most of the limb's px are foreground in fewer than 60 % of the views showing it.
+def _is_unexplained(
+    limb: tuple[np.ndarray, ...], silhouettes: tuple[Silhouette, ...], weights: np.ndarray
+) -> bool:
+    """Whether most of the limb's px are foreground in less than 60 % of the views showing it.
 
-    A limb that no view shows is unexplained.
+    Views count by their weights (V,). A limb that no view shows is unexplained.
     """
-    explained = []
-    for part, silhouette in zip(limb, silhouettes, strict=True):
+    explained, shares = [], []
+    for part, silhouette, weight in zip(limb, silhouettes, weights.tolist(), strict=True):
         drawn = part & silhouette.observed
         if drawn.any():
             explained.append(silhouette.foreground[drawn].mean() >= _EXPLAINED_SHARE)
-    return not explained or float(np.mean(explained)) < _EXPLAINED_SHARE
+            shares.append(weight)
+    return not sum(shares) or float(np.average(explained, weights=shares)) < _EXPLAINED_SHARE
 
 
 def _figure(reduction, values: np.ndarray) -> float:

@@ -17,7 +17,8 @@ from ..body.body import Body
 from ..body.kinematics import points
 from ..energy.weight_maps import xor_weight_maps
 from ..silhouettes.silhouette import Silhouette
-from .scores import frame_scores, points_of
+from .limbs import points_of
+from .scores import frame_scores
 from .tracker import Tracker
 from .tracking import FrameFit, History, track
 
@@ -25,6 +26,8 @@ AGREED_M = 0.03
 """Two poses whose points are all nearer to each other are the same."""
 APART_M = 0.1
 """Passes that differ by more tell of a frame that is lost, where neither explains it better."""
+_EITHER = 0.3
+"""Times the confidence that a point has where each pass puts it elsewhere."""
 _AGREEING = 2
 """Frames in a row in which both passes have to agree."""
 _CALM = 3
@@ -136,7 +139,10 @@ def _joined(
         ambiguous = abs(cost[0] - cost[1]) < 1.0 and _apart(body, poses[0], poses[1]) > APART_M
         if k or ambiguous:
             scores = frame_scores(tracker.evaluator, poses[k], silhouettes)
-            scores = replace(scores, lost=scores.lost or ambiguous)
+            if ambiguous:
+                apart = np.linalg.norm(np.diff(points(body, poses[:2]), axis=0)[0], axis=1)
+                likely = np.where(apart > APART_M, _EITHER, 1.0) * scores.confidence
+                scores = replace(scores, lost=True, confidence=likely)
             yield index, replace(fits[index], pose=poses[k], scores=scores)
 
 
@@ -146,7 +152,8 @@ def _passed_back(
     """The poses (D,) that a pass from the stretch's end finds, by index, until it agrees."""
     begin, end = stretch
     indices = range(end - 1, begin - 1, -1)
-    passed = track(tracker, History(fits[end].pose), read([fits[i].frame for i in indices]))
+    history = History(tracker.evaluator.body, fits[end].pose)
+    passed = track(tracker, history, read([fits[i].frame for i in indices]))
     found, agreeing = {}, 0
     for index, fit in zip(indices, passed, strict=False):
         found[index] = fit.pose

@@ -68,16 +68,20 @@ class Past:
         predicted: (D,) the pose expected now.
         usual: (5,) `FrameScores.lumps` that the frames before had usually; infinite where there
             were none.
+        trusted: (D,) the pose expected now, with each limb that was in trouble as it was before.
+        patient: (5,) bool, whether a limb may be held there while the silhouettes drop it.
     """
 
     last: np.ndarray
     predicted: np.ndarray
     usual: np.ndarray
+    trusted: np.ndarray
+    patient: np.ndarray
 
     @classmethod
     def still(cls, pose: np.ndarray) -> "Past":
         """Nothing but a pose (D,), that is not expected to change."""
-        return cls(pose, pose, np.full(5, np.inf))
+        return cls(pose, pose, np.full(5, np.inf), pose, np.ones(5, bool))
 
 
 class Tracker(Protocol):

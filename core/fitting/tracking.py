@@ -9,7 +9,9 @@ from types import MappingProxyType
 
 import numpy as np
 
+from ..body.body import Body
 from ..silhouettes.silhouette import Silhouette
+from .limbs import LIMB_NAMES
 from .scores import FrameScores, frame_scores
 from .tracker import Past, PoseFit, Tally, Tracker
 
@@ -20,6 +22,10 @@ _REMEMBERED = 60
 """Frames whose lumps are remembered."""
 _USUAL = 0.35
 """Share of them that had less than what is taken as usual: a limb may be lost for long."""
+_TROUBLE, _TROUBLE_M2 = 1.5, 0.03
+"""Lumps of a limb in trouble: so many times the usual ones, and so much more."""
+_PATIENCE = 10
+"""Frames that a limb in trouble is expected where it was before."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,18 +53,28 @@ class History:
     """The frames tracked so far in one direction, as far as the next one needs them.
 
     Args:
-        pose: (D,) the pose that the first frame is searched from.
+        body: whose.
+        pose: (D,) that the first frame is searched from.
     """
 
-    def __init__(self, pose: np.ndarray):
-        self._poses = [pose, pose]
+    def __init__(self, body: Body, pose: np.ndarray):
+        self._poses, self._trusted = [pose, pose], pose
+        self._troubled = np.zeros(len(LIMB_NAMES), int)
         self._lumps: deque[np.ndarray] = deque(maxlen=_REMEMBERED)
+        self._limbs = {
+            LIMB_NAMES.index(part.name): list(part.dofs)
+            for part in body.parts
+            if part.role == "limb"
+        }
 
     def add(self, pose: np.ndarray, lumps: np.ndarray, locked: bool = False) -> None:
         """One more frame: its pose (D,), `FrameScores.lumps` (5,), and whether it was given.
 
         From a given pose nothing is expected to go on moving.
         """
+        troubled = (lumps > _TROUBLE * self._usual + _TROUBLE_M2) & (not locked)
+        self._troubled = np.where(troubled, self._troubled + 1, 0)
+        self._trusted = np.where(self._held, self._trusted, pose)
         self._poses = [pose if locked else self._poses[1], pose]
         self._lumps.append(lumps)
 
@@ -66,8 +82,21 @@ class History:
     def past(self) -> Past:
         """What the next frame is searched from."""
         before, last = self._poses
-        usual = np.quantile(self._lumps, _USUAL, axis=0) if self._lumps else np.full(5, np.inf)
-        return Past(last, last + _DAMPING * (last - before), usual)
+        predicted = last + _DAMPING * (last - before)
+        trusted = np.where(self._held, self._trusted, predicted)
+        return Past(last, predicted, self._usual, trusted, self._troubled < _PATIENCE)
+
+    @property
+    def _held(self) -> np.ndarray:
+        """(D,) bool, the DOFs of limbs in trouble, unless they are for too long."""
+        held = np.zeros(len(self._trusted), bool)
+        for limb, dofs in self._limbs.items():
+            held[dofs] = 0 < self._troubled[limb] <= _PATIENCE
+        return held
+
+    @property
+    def _usual(self) -> np.ndarray:
+        return np.quantile(self._lumps, _USUAL, axis=0) if self._lumps else np.full(5, np.inf)
 
 
 def track(

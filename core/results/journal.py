@@ -21,7 +21,8 @@ from ..body.body import POINT_NAMES, Body
 from ..body.file import read_body, write_body
 from ..errors import MocapError
 from ..files import made_folder, unwritable
-from ..fitting.scores import LIMB_NAMES, FrameScores
+from ..fitting.limbs import LIMB_NAMES
+from ..fitting.scores import FrameScores
 from ..fitting.tracker import Tally
 from ..fitting.tracking import FrameFit
 from ..footage.pictures import write_picture
@@ -286,6 +287,8 @@ def _record(dofs: int, views: int) -> np.dtype:
             ("limb_residual", "<f8", (len(LIMB_NAMES),)),
             ("view_weights", "<f8", (views,)),
             ("lumps", "<f8", (len(LIMB_NAMES),)),
+            ("point_spreads", "<f8", (len(POINT_NAMES),)),
+            ("dof_spreads", "<f8", (dofs,)),
             ("confidence", "<f8", (len(POINT_NAMES),)),
             ("lost", "?"),
             ("locked", "?"),

@@ -60,7 +60,7 @@ class _Passes:
         finished = {fit.frame: fit for fit in self.journal.fits()}
         self.progress.begin("fit", total - len(finished))
         for frames in self.directions:
-            history = History(self.journal.start.pose)
+            history = History(self.journal.start.body, self.journal.start.pose)
             for fit in (finished[frame] for frame in frames if frame in finished):
                 history.add(fit.pose, fit.scores.lumps, fit.locked)
             left = [frame for frame in frames if frame not in finished]

@@ -12,6 +12,7 @@ import numpy as np
 import scipy
 
 from ..files import whole_file
+from ..fitting.observability import UNOBSERVED
 from ..fitting.tracking import FrameFit
 from ..motion.motion import Motion
 from ..plain import plain
@@ -27,9 +28,19 @@ def fit_quality(motion: Motion, fits: Sequence[FrameFit]) -> dict:
         "iou_per_frame": [_mean(row) for row in motion.iou],
         "contour_px": _median([fit.scores.contour_px for fit in ordered]),
         "lost_frames": motion.frames[motion.lost].tolist(),
+        "held_dofs": _held(motion, ordered),
         "seconds_per_frame": [fit.seconds for fit in ordered],
         "evaluations_per_frame": [fit.tally.evaluated for fit in ordered],
         "outside_windows_per_frame": [fit.tally.outside_windows for fit in ordered],
+    }
+
+
+def _held(motion: Motion, fits: Sequence[FrameFit]) -> dict[str, float]:
+    """Share of the frames in which each DOF is held by priors alone, where there are any."""
+    spreads = np.stack([fit.scores.dof_spreads for fit in fits])
+    shares = (spreads > UNOBSERVED).mean(axis=0).round(3)
+    return {
+        name: float(share) for name, share in zip(motion.dof_names, shares, strict=True) if share
     }
 
 

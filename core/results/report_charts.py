@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..fitting.scores import LIMB_NAMES, limb_of
+from ..fitting.limbs import LIMB_NAMES, limb_of
 from ..motion.motion import Motion
 from ..pages.axis import value_axis
 from ..pages.chart import Chart, Scale, Series, chart_figure

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..fitting.scores import LIMB_NAMES
+from ..fitting.limbs import LIMB_NAMES
 from ..motion.motion import Motion
 
 _NEIGHBOURHOOD = 24

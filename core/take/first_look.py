@@ -12,8 +12,9 @@ import numpy as np
 from ..cameras.camera import Camera
 from ..errors import MocapError
 from ..initialisation.plausibility import check_height
-from ..initialisation.standing import body_centre, centroid_ray, standing_height
+from ..initialisation.standing import body_centre, standing_height
 from ..silhouettes.masks import ReadyMasks
+from ..silhouettes.place import centroid_ray
 from ..silhouettes.silhouette import Silhouette
 from .take import Take
 from .views import View, Views

@@ -116,3 +116,47 @@ def test_any_number_of_threads_finds_the_same_pose_bit_by_bit():
         )
         poses.append(tracker.fit(seen, Past.still(body.rest_pose)).pose)
     np.testing.assert_array_equal(*poses)
+
+
+def with_usual(pose, usual):
+    return replace(Past.still(pose), usual=np.full(5, usual))
+
+
+def test_an_arm_that_all_views_drop_is_held_where_it_was():
+    body, cameras = small_body("performer"), small_studio()
+    truth = dof_values(body, left_shoulder_abduction=0.9)
+    arm = next(part for part in body.parts if part.name == "left_arm")
+    others = [s for s in range(len(body.segment_names)) if s not in arm.segments]
+    drawn = evaluator(body, cameras)
+    bare = drawn.silhouettes(truth, others)
+    seen = tuple(Silhouette(mask, np.ones_like(mask)) for mask in bare)
+    fit = ContourTracker(body, cameras, evaluator).fit(seen, with_usual(truth, 0.0))
+    assert point_errors(body, fit.pose, truth)["left_wrist"] < 2 * PIXEL_M
+    impatient = replace(with_usual(truth, 0.0), patient=np.zeros(5, bool))
+    fit = ContourTracker(body, cameras, evaluator).fit(seen, impatient)
+    assert point_errors(body, fit.pose, truth)["left_wrist"] > 5 * PIXEL_M
+
+
+def test_an_arm_hidden_before_the_body_is_found_when_it_shows_again():
+    body, cameras = small_body("performer"), small_studio()
+    truth = dof_values(body, left_shoulder_flexion=1.3, left_elbow_flexion=0.6)
+    hidden = dof_values(body, left_shoulder_abduction=-1.2, left_elbow_flexion=1.0)
+    fit = ContourTracker(body, cameras, evaluator).fit(
+        filmed(body, cameras, truth), with_usual(hidden, 0.0)
+    )
+    assert point_errors(body, fit.pose, truth)["left_wrist"] < PIXEL_M
+
+
+def test_a_view_of_another_moment_does_little_harm():
+    body, cameras = small_body("performer"), small_studio()
+    truth, other = bent(body), dof_values(body, root_x=0.4, root_y=0.3)
+    seen = list(filmed(body, cameras, truth))
+    seen[2] = filmed(body, cameras, other)[2]
+    past = Past.still(body.rest_pose)
+    errors = []
+    for weighed in (True, False):
+        settings = replace(ContourSettings(), views_weighed=weighed)
+        fit = ContourTracker(body, cameras, evaluator, settings).fit(tuple(seen), past)
+        errors.append(mean_error(body, fit.pose, truth))
+    assert errors[0] < 0.5 * PIXEL_M
+    assert errors[0] < 0.7 * errors[1]

@@ -1,7 +1,13 @@
 import numpy as np
 import pytest
-from silhouette_mocap.core.fitting.lumps import THICK_M, Lumps, first_joint_and_length
-from silhouette_mocap.core.fitting.scores import LIMB_NAMES, limb_segments, metres_at
+from silhouette_mocap.core.fitting.limbs import LIMB_NAMES, limb_segments
+from silhouette_mocap.core.fitting.lumps import (
+    THICK_M,
+    Lumps,
+    first_joint_and_length,
+    seen_area,
+)
+from silhouette_mocap.core.fitting.scores import metres_at
 from silhouette_mocap.core.silhouettes.silhouette import Silhouette
 from synthetic import dof_values, evaluator, filmed, small_body, small_studio
 
@@ -16,9 +22,8 @@ def lumps_by_limb(scene, pose, silhouettes, weights=None):
     body, cameras, drawn = scene
     found = Lumps.of(drawn.silhouettes(pose), silhouettes, metres_at(drawn, pose))
     weights = np.ones(len(cameras)) if weights is None else weights
-    return dict(
-        zip(LIMB_NAMES, found.of_limbs(drawn, pose, limb_segments(body), weights), strict=True)
-    )
+    areas = found.of_limbs(drawn, pose, limb_segments(body), weights).sum(axis=0)
+    return dict(zip(LIMB_NAMES, areas, strict=True))
 
 
 def squares(side_px):
@@ -85,3 +90,27 @@ def test_a_limb_is_as_long_as_its_bones(scene):
     joint, length = first_joint_and_length(body, arm)
     assert body.joint_names[joint].startswith("left_")
     assert 0.5 < length < 1.0
+
+
+def test_what_is_missing_and_what_is_surplus_are_told_apart(scene):
+    body, cameras, drawn = scene
+    raised = dof_values(body, left_shoulder_abduction=2.2)
+    arm = LIMB_NAMES.index("left_arm")
+    seen = filmed(body, cameras, raised)
+    found = Lumps.of(drawn.silhouettes(body.rest_pose), seen, metres_at(drawn, body.rest_pose))
+    missing, surplus = found.of_limbs(
+        drawn, body.rest_pose, limb_segments(body), np.ones(len(cameras))
+    )
+    assert min(missing[arm], surplus[arm]) > 0.01
+    # what the model covers in vain is drawn by the arm alone
+    assert surplus[LIMB_NAMES.index("right_leg")] == 0
+
+
+def test_the_area_of_a_limb_is_what_nothing_else_covers(scene):
+    body, _, drawn = scene
+    arm = limb_segments(body)[LIMB_NAMES.index("left_arm")]
+    shares = metres_at(drawn, body.rest_pose) ** 2
+    out = dof_values(body, left_shoulder_abduction=1.5)
+    alone = drawn.silhouettes(out, arm)
+    whole = float(shares @ [picture.sum() for picture in alone])
+    assert 0.5 * whole < seen_area(drawn, out, arm, shares) < whole

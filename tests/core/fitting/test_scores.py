@@ -1,12 +1,8 @@
 from dataclasses import replace
 
 import numpy as np
-from silhouette_mocap.core.fitting.scores import (
-    LIMB_NAMES,
-    contour_pairs,
-    frame_scores,
-    limb_segments,
-)
+from silhouette_mocap.core.fitting.limbs import LIMB_NAMES, limb_segments
+from silhouette_mocap.core.fitting.scores import contour_pairs, frame_scores
 from silhouette_mocap.core.silhouettes.silhouette import Silhouette
 from synthetic import dof_values, evaluator, filmed, small_body, small_studio
 

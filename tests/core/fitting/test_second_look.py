@@ -101,11 +101,11 @@ def test_a_locked_pose_bounds_what_later_locks_change(scene):
 def test_frames_with_locks_have_that_pose_and_the_next_starts_from_it(scene):
     body, tracker, truth, seen = scene
     lock = dof_values(body, left_shoulder_abduction=0.3)
-    history = History(body.rest_pose)
+    history = History(body, body.rest_pose)
     fits = list(track(tracker, history, reader(seen)(range(4)), {2: lock}))
     np.testing.assert_array_equal(fits[2].pose, lock)
     assert [fit.locked for fit in fits] == [False, False, True, False]
-    history = History(body.rest_pose)
+    history = History(body, body.rest_pose)
     history.add(truth[0], np.zeros(5))
     history.add(lock, np.zeros(5), locked=True)
     np.testing.assert_array_equal(history.past.predicted, lock)

@@ -25,6 +25,8 @@ def frame_fit(frame: int) -> FrameFit:
         limb_residual=rng.random(5),
         view_weights=rng.random(VIEWS),
         lumps=rng.random(5),
+        point_spreads=rng.random(14),
+        dof_spreads=rng.random(len(body.dofs)),
         confidence=rng.random(14),
         lost=bool(frame % 2),
     )

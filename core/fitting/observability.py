@@ -1,0 +1,85 @@
+"""How well the silhouettes of a frame fix its pose.
+
+The normal equations of the outlines' distances at the pose found tell how far each DOF may turn
+before the silhouettes notice: an arm before the chest in all views, the twist of a straight limb
+and the turn of a round head hardly change any outline, so that only the priors hold them. A limb
+that lies off every contour is fixed by nothing either, as distances beyond the reach count for
+next to nothing.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..body.body import Body, DofKind
+from ..body.kinematics import points
+from ..energy.evaluator import Evaluator
+from ..silhouettes.silhouette import Silhouette
+from .contour_targets import ContourTargets
+from .twists import Twists
+
+UNOBSERVED = 0.35
+"""Spread, rad or m, of a DOF that the silhouettes do not tell: the priors hold it."""
+_SPACING_M = 0.03
+_DEVIATION_M = 0.03
+"""Standard deviation of a distance; its points are as good as independent of each other."""
+_REACH_M, _TURN_M = 0.06, 0.09
+_FREE_M, _FREE_RAD = 0.3, 1.0
+"""Standard deviations of a DOF that neither silhouettes nor the rest prior fix."""
+
+
+@dataclass(frozen=True, eq=False)
+class Observability:
+    """What silhouettes tell about one pose.
+
+    Attributes:
+        dof_spreads: (D,) standard deviation of each DOF, rad or m.
+        point_spreads: (14,) of the place of each of `POINT_NAMES`, m.
+    """
+
+    dof_spreads: np.ndarray
+    point_spreads: np.ndarray
+
+    @classmethod
+    def of(
+        cls,
+        evaluator: Evaluator,
+        pose: np.ndarray,
+        silhouettes: Sequence[Silhouette],
+        view_weights: np.ndarray,
+        metres: np.ndarray,
+    ) -> "Observability":
+        """Of a pose (D,) against V silhouettes.
+
+        Args:
+            evaluator: draws the body.
+            pose: that was found.
+            silhouettes: what the views show.
+            view_weights: (V,) how far each view is trusted.
+            metres: (V,) m that a pixel is wide where the performer stands.
+        """
+        body = evaluator.body
+        spacings_px = _SPACING_M / metres
+        contours = [
+            silhouette.contour.thinned(spacing)
+            for silhouette, spacing in zip(silhouettes, spacings_px.tolist(), strict=True)
+        ]
+        targets = ContourTargets(body, evaluator.cameras, contours, metres)
+        targets.shares = view_weights
+        transforms, twists = Twists(body).at(pose)
+        outlines = evaluator.outline(pose, None, float(spacings_px.max()))
+        matrix, _ = targets.terms(outlines, transforms, _REACH_M, _TURN_M).gathered(twists)
+        free = np.where(body.dofs.kinds == DofKind.TRANSLATION, _FREE_M, _FREE_RAD)
+        priors = 1.0 / np.minimum(free, body.dofs.rest_spread) ** 2
+        covariance = np.linalg.inv(matrix / _DEVIATION_M**2 + np.diag(priors))
+        moves = _point_moves(body, pose, twists)
+        variances = np.einsum("pcd,de,pce->p", moves, covariance, moves)
+        return cls(np.sqrt(np.diag(covariance)), np.sqrt(variances))
+
+
+def _point_moves(body: Body, pose: np.ndarray, twists: np.ndarray) -> np.ndarray:
+    """(14, 3, D) change of the points' places, m, with each DOF."""
+    places = points(body, pose[None])[0]
+    carried = twists[body.point_joints]
+    return np.moveaxis(carried[..., :3] + np.cross(carried[..., 3:], places[:, None]), 1, 2)

@@ -1,0 +1,44 @@
+"""Where to begin anew once the whole body is lost: from the visual hull.
+
+After the performer left the pictures, or footage failed for a while, the last pose tells nothing of
+the place. The hull tells where the body is; which way it faces is tried all round, with the limbs
+as they were last, and at rest.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..body.body import Body, DofKind
+from ..body.kinematics import points
+from ..cameras.camera import Camera
+from ..silhouettes.place import performer_centre, visual_hull
+from ..silhouettes.silhouette import Silhouette
+
+_HALF_M, _STEP_M = 1.2, 0.06
+_HEADINGS = 12
+
+
+def restarts(
+    body: Body, cameras: Sequence[Camera], silhouettes: Sequence[Silhouette], pose: np.ndarray
+) -> np.ndarray:
+    """(n, D) poses to begin anew from, all in the middle of the visual hull; maybe none.
+
+    They have the limbs of ``pose`` (D,), or at rest, and headings all round.
+    """
+    centre = performer_centre(cameras, silhouettes)
+    if centre is None:
+        return np.zeros((0, len(pose)))
+    hull = visual_hull(cameras, silhouettes, centre, _HALF_M, _STEP_M)
+    if len(hull):
+        centre = hull.mean(axis=0)
+    shifts = np.flatnonzero((body.dofs.joints == 0) & (body.dofs.kinds == DofKind.TRANSLATION))
+    turns = np.flatnonzero((body.dofs.joints == 0) & (body.dofs.kinds != DofKind.TRANSLATION))
+    upright = body.rest_pose.copy()
+    upright[turns] = pose[turns]
+    shapes = np.repeat(np.stack([pose, upright]), _HEADINGS, axis=0)
+    heading = turns[np.argmax(np.abs(body.dofs.axes[turns, 2]))]
+    shapes[:, heading] += np.tile(np.arange(_HEADINGS) * 2 * np.pi / _HEADINGS, 2)
+    middles = points(body, shapes).mean(axis=1)
+    shapes[:, shifts] += (centre - middles) @ body.dofs.axes[shifts].T
+    return shapes
