@@ -97,7 +97,7 @@ class Passes:
 
     def __init__(self, recording: Recording, start: Beginning, variant: Variant, tracker: Tracker):
         self._recording, self._variant, self._tracker = recording, variant, tracker
-        self._pose, self._courses = start.pose, []
+        self._start, self._courses = start, []
         after = [frame for frame in recording.frames if frame >= start.frame]
         before = [frame for frame in reversed(recording.frames) if frame < start.frame]
         self._directions = [frames for frames in (after, before) if frames]
@@ -106,7 +106,8 @@ class Passes:
         """The fits from the initial pose on, then of what comes before."""
         for frames in self._directions:
             fits = []
-            for fit in track(self._tracker, History(self._pose), made_ahead(self._read(frames))):
+            history = History(self._start.body, self._start.pose)
+            for fit in track(self._tracker, history, made_ahead(self._read(frames))):
                 fits.append(fit)
                 yield fit
             self._courses.append(Course(fits, truth_of(self._recording).fps or 1.0))

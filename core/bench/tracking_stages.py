@@ -54,7 +54,7 @@ def stage_seconds(
     make = with_level_for(start.pose, _timed_evaluators(watch))
     tracker = _timed_tracker(DEFAULT.make(start.body, recording.cameras, make), watch)
     fits, begin = [], time.process_time()
-    for found in track(tracker, History(start.pose), footage(recording.frames)):
+    for found in track(tracker, History(start.body, start.pose), footage(recording.frames)):
         fits.append(found)
         advance(found.frame)
     watch.seconds[SCORES] = time.process_time() - begin - sum(watch.seconds.values())

@@ -19,7 +19,7 @@ from ..silhouettes.silhouette import Silhouette
 from .contour_targets import ContourTargets
 from .twists import Twists
 
-UNOBSERVED = 0.35
+UNOBSERVED = 0.2
 """Spread, rad or m, of a DOF that the silhouettes do not tell: the priors hold it."""
 _SPACING_M = 0.03
 _DEVIATION_M = 0.03

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..energy.evaluator import Evaluator
 from ..silhouettes.silhouette import Silhouette
-from .confidence import point_confidence
+from .confidence import LimbSigns, point_confidence
 from .limbs import limb_segments
 from .lumps import Lumps
 from .observability import Observability
@@ -26,6 +26,8 @@ class FrameScores:
         contour_px: median distance from the rendered contours to the observed ones.
         limb_residual: (5,) mean distance of each of `LIMB_NAMES`' own contour to the observed one,
             px; NaN where no view shows any of it.
+        unexplained: (5,) share of what each of `LIMB_NAMES` covers that the footage shows as
+            background, mean over views by weight; 1 where no view shows any of it.
         view_weights: (V,) how far each view is trusted, see `view_weights`.
         lumps: (5,) m^2 of `Lumps` that each of `LIMB_NAMES` may explain, summed over views.
         point_spreads: (14,) m, `Observability.point_spreads`.
@@ -39,6 +41,7 @@ class FrameScores:
     iou: np.ndarray
     contour_px: float
     limb_residual: np.ndarray
+    unexplained: np.ndarray
     view_weights: np.ndarray
     lumps: np.ndarray
     point_spreads: np.ndarray
@@ -74,20 +77,21 @@ def frame_scores(
     metres = metres_at(evaluator, pose)
     found = Lumps.of(rendered, silhouettes, metres)
     lumps = found.of_limbs(evaluator, pose, chosen, weights).sum(axis=0)
+    explained, most = np.array([_explained(parts, silhouettes, weights) for parts in limbs]).T
     seen = Observability.of(evaluator, pose, silhouettes, weights, metres)
+    signs = LimbSigns(residual * metres.mean(), lumps / max(weights.sum(), 1e-9), 1.0 - explained)
     return FrameScores(
         xor_px=xor,
         iou=iou,
         contour_px=_figure(np.median, distances_of(rendered)),
         limb_residual=residual,
+        unexplained=1.0 - explained,
         view_weights=weights,
         lumps=lumps,
         point_spreads=seen.point_spreads,
         dof_spreads=seen.dof_spreads,
-        confidence=point_confidence(
-            seen.point_spreads, residual * metres.mean(), lumps / max(weights.sum(), 1e-9)
-        ),
-        lost=any(_is_unexplained(parts, silhouettes, weights) for parts in limbs),
+        confidence=point_confidence(seen.point_spreads, signs),
+        lost=bool((most < _EXPLAINED_SHARE).any()),
     )
 
 
@@ -116,20 +120,23 @@ def contour_pairs(model: np.ndarray, observed: np.ndarray) -> np.ndarray:
     return np.concatenate(found, axis=1)
 
 
-def _is_unexplained(
+def _explained(
     limb: tuple[np.ndarray, ...], silhouettes: tuple[Silhouette, ...], weights: np.ndarray
-) -> bool:
-    """Whether most of the limb's px are foreground in less than 60 % of the views showing it.
+) -> tuple[float, float]:
+    """Shares, by weights (V,), of a limb's px that are foreground, and of views where most are.
 
-    Views count by their weights (V,). A limb that no view shows is unexplained.
+    Only views that show some of it count; both are 0 where none does.
     """
-    explained, shares = [], []
+    found = []
     for part, silhouette, weight in zip(limb, silhouettes, weights.tolist(), strict=True):
         drawn = part & silhouette.observed
-        if drawn.any():
-            explained.append(silhouette.foreground[drawn].mean() >= _EXPLAINED_SHARE)
-            shares.append(weight)
-    return not sum(shares) or float(np.average(explained, weights=shares)) < _EXPLAINED_SHARE
+        if weight and drawn.any():
+            share = float(silhouette.foreground[drawn].mean())
+            found.append((weight, share, share >= _EXPLAINED_SHARE))
+    if not found:
+        return 0.0, 0.0
+    by_weight, shares, most = np.array(found, float).T
+    return float(by_weight @ shares / by_weight.sum()), float(by_weight @ most / by_weight.sum())
 
 
 def _figure(reduction, values: np.ndarray) -> float:

@@ -285,6 +285,7 @@ def _record(dofs: int, views: int) -> np.dtype:
             ("iou", "<f8", (views,)),
             ("contour_px", "<f8"),
             ("limb_residual", "<f8", (len(LIMB_NAMES),)),
+            ("unexplained", "<f8", (len(LIMB_NAMES),)),
             ("view_weights", "<f8", (views,)),
             ("lumps", "<f8", (len(LIMB_NAMES),)),
             ("point_spreads", "<f8", (len(POINT_NAMES),)),

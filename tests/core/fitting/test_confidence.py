@@ -1,35 +1,48 @@
-import numpy as np
-from silhouette_mocap.core.body.body import POINT_NAMES
-from silhouette_mocap.core.fitting.confidence import point_confidence
+from dataclasses import replace
 
-WELL = np.full(14, 0.008), np.full(5, 0.012), np.zeros(5)
+import numpy as np
+import pytest
+from silhouette_mocap.core.body.body import POINT_NAMES
+from silhouette_mocap.core.fitting.confidence import LimbSigns, point_confidence
+
+SPREADS = np.full(14, 0.006)
+WELL = LimbSigns(residual=np.full(5, 0.008), lumps=np.zeros(5), unexplained=np.full(5, 0.03))
+ARM = [POINT_NAMES.index(name) for name in ("left_elbow", "left_wrist")]
+
+
+def with_arm(values, value):
+    changed = values.copy()
+    changed[1] = value
+    return changed
+
+
+BAD = LimbSigns(
+    residual=with_arm(WELL.residual, 0.15),
+    lumps=with_arm(WELL.lumps, 0.05),
+    unexplained=with_arm(WELL.unexplained, 0.7),
+)
 
 
 def test_a_fit_without_fault_is_likely():
-    assert (point_confidence(*WELL) > 0.7).all()
+    assert (point_confidence(SPREADS, WELL) > 0.8).all()
 
 
-def test_each_sign_of_error_lowers_the_confidence_of_its_own_points():
-    arm = [POINT_NAMES.index(name) for name in ("left_elbow", "left_wrist")]
-    others = np.setdiff1d(np.arange(14), arm)
-    well = point_confidence(*WELL)
-    spreads, residual, lumps = (array.copy() for array in WELL)
-    spreads[arm] = 0.15
-    residual[1] = 0.15
-    lumps[1] = 0.05
-    for changed in (
-        (spreads, *WELL[1:]),
-        (WELL[0], residual, WELL[2]),
-        (*WELL[:2], lumps),
-    ):
-        found = point_confidence(*changed)
-        assert (found[arm] < well[arm]).all()
-        np.testing.assert_array_equal(found[others], well[others])
-    assert (point_confidence(spreads, residual, lumps)[arm] < 0.3).all()
+@pytest.mark.parametrize("sign", ["spread", "residual", "lumps", "unexplained"])
+def test_each_sign_of_error_lowers_the_confidence_of_its_own_points(sign):
+    well, spreads, signs = point_confidence(SPREADS, WELL), SPREADS.copy(), WELL
+    if sign == "spread":
+        spreads[ARM] = 0.1
+    else:
+        signs = replace(WELL, **{sign: getattr(BAD, sign)})
+    found, others = point_confidence(spreads, signs), np.setdiff1d(np.arange(14), ARM)
+    assert (found[ARM] < well[ARM]).all()
+    np.testing.assert_array_equal(found[others], well[others])
+
+
+def test_all_signs_together_leave_no_doubt():
+    assert (point_confidence(np.full(14, 0.1), BAD)[ARM] < 0.05).all()
 
 
 def test_a_limb_that_no_view_shows_is_unlikely():
-    unseen = WELL[1].copy()
-    unseen[1] = np.nan
-    found = point_confidence(np.full(14, 0.3), unseen, WELL[2])
-    assert found[POINT_NAMES.index("left_wrist")] < 0.3
+    unseen = LimbSigns(np.full(5, np.nan), np.zeros(5), np.ones(5))
+    assert (point_confidence(np.full(14, 0.3), unseen) < 0.05).all()

@@ -61,11 +61,8 @@ def test_a_limb_off_every_contour_is_not_known(scene):
 def test_the_turn_of_a_straight_limb_is_told_by_nothing(scene):
     body, cameras, _ = scene
     pose = dof_values(body, left_shoulder_abduction=1.3)
-    spreads = dict(
-        zip(
-            body.dofs.names, seen(scene, pose, filmed(body, cameras, pose)).dof_spreads, strict=True
-        )
-    )
+    found = seen(scene, pose, filmed(body, cameras, pose)).dof_spreads
+    spreads = dict(zip(body.dofs.names, found, strict=True))
     assert spreads["left_shoulder_twist"] > UNOBSERVED
     assert spreads["left_shoulder_abduction"] < 0.1
     bent = dof_values(body, left_shoulder_abduction=1.3, left_elbow_flexion=1.3)

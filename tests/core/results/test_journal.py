@@ -23,6 +23,7 @@ def frame_fit(frame: int) -> FrameFit:
         iou=np.array([0.1, np.nan, 1 / 3]),
         contour_px=rng.random(),
         limb_residual=rng.random(5),
+        unexplained=rng.random(5),
         view_weights=rng.random(VIEWS),
         lumps=rng.random(5),
         point_spreads=rng.random(14),
