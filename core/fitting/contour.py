@@ -1,10 +1,12 @@
 """Tracker ``contour``: outlines drawn to the observed contours, judged by the exact energy.
 
-Each frame descends from the predicted pose and from the last one (`contour_descent`); the exact
-XOR energy says which end is better. Then each limb, and the head, is judged by itself: a batch of
-its poses is compared while the rest is masked out. Where one of them is better than the pose found,
-more are laid about the best, narrower and narrower, and the best few that stand apart descend in
-turn. The exact energy of the whole body has the last word.
+Each frame descends from the predicted pose (`contour_descent`); views that disagree while the
+others agree count less (`view_trust`). Then each limb, and the head, is compared with others near
+by while the rest is masked out. What the pose leaves unexplained (`lumps`) tells whether something
+is amiss: then the last pose is a second start, and limbs are sought over all their range, drawn to
+foreground that nothing covers (`limb_search`). A limb that the silhouettes have dropped is held
+where it is expected, and a body that lies beside them begins anew (`recovery`). The exact energy of
+the whole body has the last word.
 """
 
 from collections.abc import Sequence

@@ -13,7 +13,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..body.body import Body, DofKind
-from ..body.kinematics import points
 from ..energy.evaluator import Evaluator
 from ..silhouettes.silhouette import Silhouette
 from .contour_targets import ContourTargets
@@ -73,13 +72,14 @@ class Observability:
         free = np.where(body.dofs.kinds == DofKind.TRANSLATION, _FREE_M, _FREE_RAD)
         priors = 1.0 / np.minimum(free, body.dofs.rest_spread) ** 2
         covariance = np.linalg.inv(matrix / _DEVIATION_M**2 + np.diag(priors))
-        moves = _point_moves(body, pose, twists)
+        moves = _point_moves(body, transforms, twists)
         variances = np.einsum("pcd,de,pce->p", moves, covariance, moves)
         return cls(np.sqrt(np.diag(covariance)), np.sqrt(variances))
 
 
-def _point_moves(body: Body, pose: np.ndarray, twists: np.ndarray) -> np.ndarray:
-    """(14, 3, D) change of the points' places, m, with each DOF."""
-    places = points(body, pose[None])[0]
+def _point_moves(body: Body, transforms: np.ndarray, twists: np.ndarray) -> np.ndarray:
+    """(14, 3, D) change of the points' places, m, with each DOF; of `Twists.at`."""
+    own = transforms[body.point_joints]
+    places = (own[..., :3] @ body.point_offsets[..., None])[..., 0] + own[..., 3]
     carried = twists[body.point_joints]
     return np.moveaxis(carried[..., :3] + np.cross(carried[..., 3:], places[:, None]), 1, 2)

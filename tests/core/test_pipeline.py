@@ -14,6 +14,7 @@ from silhouette_mocap.core.body.templates import template
 from silhouette_mocap.core.errors import MocapError
 from silhouette_mocap.core.fitting import search
 from silhouette_mocap.core.fitting.search import Search
+from silhouette_mocap.core.motion.locks import write_locks
 from silhouette_mocap.core.motion.motion import read_motion
 from silhouette_mocap.core.pipeline import FitRequest, fit, initial_frames
 from silhouette_mocap.core.progress import Silence
@@ -129,6 +130,23 @@ def test_frames_before_the_initial_pose_are_tracked_backwards(quick_start, small
     assert progress.frames[:3] == [1, 2, 0]
     np.testing.assert_array_equal(result.motion.frames, [0, 1, 2])
     assert result.report["error_mm"]["absolute"]["max"] < 100
+
+
+def test_the_motion_goes_through_locked_poses(quick_start, small_take, tmp_path):
+    plain = fit(read_take(small_take), FitRequest(tmp_path / "plain"), Silence()).motion
+    body = read_body(tmp_path / "plain" / "body.npz")
+    lock = plain.pose_raw[2].copy()
+    lock[body.dofs.names.index("left_shoulder_flexion")] += 0.1
+    write_locks(tmp_path / "locks.npz", body, {2: lock})
+    take = replace(read_take(small_take), locks=tmp_path / "locks.npz")
+    motion = fit(take, FitRequest(tmp_path / "out"), Silence()).motion
+    assert motion.locked.tolist() == [False, False, True, False]
+    np.testing.assert_array_equal(motion.pose[2], lock)
+    assert not np.array_equal(motion.pose[3], plain.pose[3])
+    # a lock that changed since is another input
+    write_locks(tmp_path / "locks.npz", body, {2: plain.pose_raw[2]})
+    with pytest.raises(MocapError, match="locks"):
+        fit(take, FitRequest(tmp_path / "out", resume=True), Silence())
 
 
 def test_an_interrupted_fit_keeps_the_finished_frames(

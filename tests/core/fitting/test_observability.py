@@ -27,7 +27,7 @@ def seen(scene, pose, silhouettes, weights=None):
 def test_how_points_move_is_the_difference_quotient_of_where_they_are(scene):
     body, step = scene[0], 1e-6
     pose = np.random.default_rng(3).normal(0, 0.3, len(body.dofs))
-    moves = _point_moves(body, pose, Twists(body).at(pose)[1])
+    moves = _point_moves(body, *Twists(body).at(pose))
     for dof in range(len(pose)):
         ahead, behind = pose.copy(), pose.copy()
         ahead[dof] += step
