@@ -4,13 +4,13 @@ Each frame descends from the predicted pose (`contour_descent`); views that disa
 others agree count less (`view_trust`). Then each limb, and the head, is compared with others near
 by while the rest is masked out. What the pose leaves unexplained (`lumps`) tells whether something
 is amiss: then the last pose is a second start, and limbs are sought over all their range, drawn to
-foreground that nothing covers (`limb_search`). A limb that the silhouettes have dropped is held
-where it is expected, and a body that lies beside them begins anew (`recovery`). The exact energy of
-the whole body has the last word.
+foreground that nothing covers (`limb_search`). Where views have dropped a limb they are taken to
+show nothing, and a body that lies beside them begins anew (`recovery`). The exact energy of the
+whole body has the last word.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -24,7 +24,7 @@ from .contour_descent import Descent, DescentSettings
 from .contour_targets import ContourTargets
 from .limb_search import LimbCost, LimbSettings, better_limbs, limbs_elsewhere
 from .limbs import LIMB_NAMES, limb_segments
-from .lumps import Lumps, seen_area
+from .lumps import Lumps, dropped
 from .part_search import rest_prior
 from .recovery import restarts
 from .scores import metres_at
@@ -43,9 +43,8 @@ _RESTARTS = 4
 """Descents from the visual hull."""
 _LEAP_RAD = 0.5
 """From what is expected, that a limb has hardly moved by."""
-_DROPPED, _ELSEWHERE = 0.6, 0.4
-"""Share of a limb's visible area that is gone where the silhouettes have dropped it, and share of
-that area that may be unexplained foreground."""
+_ELSEWHERE = 0.4
+"""Foreground that is unexplained where a limb has been dropped, as a share of what is gone."""
 
 
 @dataclass(frozen=True)
@@ -128,8 +127,6 @@ class _FrameSearch:
         self.shown = observed_px >= LEAST_AREA * sum(covered)
         self.prior_px = self.settings.prior_share * observed_px
         self.tally, self.usual, self.patient = Tally(), past.usual, past.patient
-        self.held: dict[int, tuple[int, ...]] = {}
-        self.drawn: list[int] | None = None
         self.metres = metres_at(self.evaluator, self.last)
         self.trust = np.ones(len(silhouettes))
 
@@ -157,6 +154,7 @@ class _FrameSearch:
         ]
         tracker = self.tracker
         self.targets = ContourTargets(tracker.body, tracker.cameras, contours, self.metres)
+        self.targets.shares = self.trust
         self.spacing_px = float(spacings_px.max())
 
     def _trust_views(self) -> float:
@@ -190,14 +188,14 @@ class _FrameSearch:
     def _recover(self) -> None:
         """The other start where lumps tell that something is amiss, then each limb by itself."""
         doubts = self._doubts()
-        self._hold(doubts)
+        if self._disregard(doubts):
+            self._keep_best(self._descended(self.trusted, self.trusted, 1.0)[None])
+            doubts = self._doubts()
         if doubts.any():
-            others = [self._descended(self.last, self.trusted, 1.0)] if not self.held else []
-            self._keep_best(np.stack([self.pose, *others]))
+            self._keep_best(np.stack([self.pose, self._descended(self.last, self.trusted, 1.0)]))
             doubts = self._doubts()
         for limb, part in self.tracker.sought:
-            if limb not in self.held:
-                self._seek(part, bool(doubts[limb]))
+            self._seek(part, bool(doubts[limb]))
 
     def _lumps(self, pose: np.ndarray) -> np.ndarray:
         """(2, 5) `Lumps.of_limbs` of `LIMB_NAMES` in a pose (D,)."""
@@ -208,11 +206,11 @@ class _FrameSearch:
         """(5,) bool, whether there is more than usual that each of `LIMB_NAMES` may explain."""
         return self._lumps(self.pose).sum(axis=0) > _USUAL * self.usual + _LITTLE_M2
 
-    def _hold(self, doubts: np.ndarray) -> None:
-        """Holds limbs that the silhouettes have dropped where they are expected.
+    def _disregard(self, doubts: np.ndarray) -> bool:
+        """Takes as unobserved where views have dropped a limb; returns whether any has.
 
-        Those are gone from where they were last seen, and nothing is there that they could have
-        become: hidden before the body they would explain the silhouettes best, and be lost.
+        It is gone from where it is expected, and nothing is there that it could have become. Hidden
+        before the body it would explain such silhouettes best, and be lost.
         """
         leaps = np.abs(self.pose - self.trusted)
         odd = [
@@ -221,23 +219,25 @@ class _FrameSearch:
             if part.role == "limb" and self.patient[limb]
             if doubts[limb] or leaps[list(part.dofs)].max() > _LEAP_RAD
         ]
-        if not odd:
-            return
         pose = self.pose.copy()
         for _, part in odd:
             pose[list(part.dofs)] = self.trusted[list(part.dofs)]
-        missing, surplus = self._lumps(pose)
-        shares = self.trust * self.metres**2
+        lumps = Lumps.of(self.evaluator.silhouettes(pose), self.silhouettes, self.metres)
+        areas = lumps.of_limbs(self.evaluator, pose, limb_segments(self.body), self.trust)
+        silhouettes = list(self.silhouettes)
         for limb, part in odd:
-            if missing[limb] < _ELSEWHERE * surplus[limb]:
-                seen = seen_area(self.evaluator, pose, part.segments, shares)
-                if surplus[limb] > _DROPPED * seen:
-                    self.held[limb] = part.segments
-        if self.held:
-            gone = {segment for segments in self.held.values() for segment in segments}
-            self.drawn = [s for s in range(len(self.body.segment_names)) if s not in gone]
-            pose = self._descended(self.trusted, self.trusted, 1.0)
-            self._keep_best(pose[None])
+            if areas[0, limb] < _ELSEWHERE * areas[1, limb]:
+                where = (part.segments, self.silhouettes, self.metres)
+                for view, picture in enumerate(dropped(self.evaluator, pose, *where)):
+                    if picture is not None:
+                        seen = silhouettes[view]
+                        silhouettes[view] = replace(seen, observed=seen.observed & ~picture)
+        changed = any(a is not b for a, b in zip(silhouettes, self.silhouettes, strict=True))
+        if changed:
+            self.silhouettes = silhouettes
+            self.weights = self.evaluator.prepared(xor_weight_maps(silhouettes))
+            self._aim()
+        return changed
 
     def _go_on_from(self, starts: Sequence[np.ndarray]) -> None:
         """Descends once more, from each start (D,), and keeps the best."""
@@ -248,7 +248,7 @@ class _FrameSearch:
         first, last = self.settings.reaches_m
         reaches = np.geomspace(max(first * share, last), last, round(self.settings.steps * share))
         descent = self.tracker.descent
-        return descent.run(self.targets, self.spacing_px, start, expected, reaches, self.drawn)
+        return descent.run(self.targets, self.spacing_px, start, expected, reaches)
 
     def _seek(self, part: Part, doubted: bool) -> None:
         """Looks for a limb elsewhere, and descends from the better places found."""

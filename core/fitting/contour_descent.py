@@ -6,7 +6,6 @@ steps short where they tell nothing. Limits hold at every step: what they stop s
 and the other DOFs are solved for again.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -74,26 +73,25 @@ class Descent:
         start: np.ndarray,
         expected: np.ndarray,
         reaches_m: np.ndarray,
-        drawn: Sequence[int] | None = None,
     ) -> np.ndarray:
         """(D,) the pose after at most one step per reach, from ``start`` (D,), within the limits.
 
-        Outlines are sampled every ``spacing_px``; the pull goes to ``expected`` (D,). Only segments
-        ``drawn`` count, if given.
+        Outlines are sampled every ``spacing_px``; the pull goes to ``expected`` (D,).
         """
         pose = clamped(self.body, start[None])[0]
         for reach in reaches_m.tolist():
-            matrix, slope = self._equations(targets, (spacing_px, drawn), pose, expected, reach)
+            matrix, slope = self._equations(targets, spacing_px, pose, expected, reach)
             moved = self._moved(pose, matrix, slope)
             change, pose = np.abs(moved - pose).max(), moved
             if change < self.settings.still:
                 break
         return pose
 
-    def _equations(self, targets, outlined, pose, expected, reach) -> tuple[np.ndarray, np.ndarray]:
+    def _equations(
+        self, targets, spacing_px, pose, expected, reach
+    ) -> tuple[np.ndarray, np.ndarray]:
         transforms, twists = self._twists.at(pose)
-        spacing_px, drawn = outlined
-        outlines = self.evaluator.outline(pose, drawn, spacing_px)
+        outlines = self.evaluator.outline(pose, None, spacing_px)
         terms = targets.terms(outlines, transforms, reach, self.settings.turn_m)
         matrix, slope = (part / self.settings.deviation_m**2 for part in terms.gathered(twists))
         rest = self._rest * terms.count.sum()

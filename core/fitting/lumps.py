@@ -18,6 +18,10 @@ from ..silhouettes.silhouette import Silhouette
 
 THICK_M = 0.045
 """Thinner differences are none."""
+_DROPPED = 0.6
+"""Share of a limb's visible part that is background where a view has dropped it."""
+_NEAR_M = 0.08
+"""Beside a limb that a view has dropped, where it tells nothing either."""
 _REACHED = 1.15
 """Times a limb's length that lumps may be away from its first joint."""
 
@@ -90,17 +94,36 @@ class Lumps:
         return areas
 
 
-def seen_area(
-    evaluator: Evaluator, pose: np.ndarray, segments: Sequence[int], shares: np.ndarray
-) -> float:
-    """m^2 that segments cover beside the rest of the body in a pose (D,), summed over views.
+def dropped(
+    evaluator: Evaluator,
+    pose: np.ndarray,
+    segments: Sequence[int],
+    silhouettes: Sequence[Silhouette],
+    metres: np.ndarray,
+) -> tuple[np.ndarray | None, ...]:
+    """V pictures of where a limb should be seen in ``pose`` (D,), and is background for the most.
 
-    ``shares`` (V,) are m^2 of a pixel in each view, by its weight.
+    None in views that show most of it, or where the rest of the body hides it. The pictures reach
+    a little beyond the limb. ``metres`` (V,) are those that a pixel is wide.
     """
     others = [s for s in range(len(evaluator.body.segment_names)) if s not in segments]
-    pictures = evaluator.silhouettes(pose), evaluator.silhouettes(pose, others)
-    counts = [np.count_nonzero(whole & ~rest) for whole, rest in zip(*pictures, strict=True)]
-    return float(shares @ counts)
+    found = []
+    for limb, rest, silhouette, metre in zip(
+        evaluator.silhouettes(pose, segments), evaluator.silhouettes(pose, others),
+        silhouettes, metres.tolist(), strict=True,
+    ):  # fmt: skip
+        visible = limb & ~rest & silhouette.observed
+        seen, gone = np.count_nonzero(visible), np.count_nonzero(visible & ~silhouette.foreground)
+        lost = seen * metre**2 > THICK_M**2 and gone > _DROPPED * seen
+        found.append(_beyond(limb, metre) if lost else None)
+    return tuple(found)
+
+
+def _beyond(drawn: np.ndarray, metre: float) -> np.ndarray:
+    """What is drawn and what is near."""
+    side = 2 * round(_NEAR_M / metre) + 1
+    kernel = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (side, side))
+    return cv2.dilate(drawn.view(np.uint8), kernel).astype(bool)
 
 
 @lru_cache(maxsize=64)
