@@ -41,8 +41,8 @@ _BESIDE = 0.45
 """Px that differ, as a share of silhouettes and model together, where the body is lost."""
 _RESTARTS = 4
 """Descents from the visual hull."""
-_LEAP_RAD = 0.5
-"""From what is expected, that a limb has hardly moved by."""
+_LEAP_M = 0.2
+"""From what is expected, by which a joint of a limb has hardly moved."""
 _ELSEWHERE = 0.4
 """Foreground that is unexplained where a limb has been dropped, as a share of what is gone."""
 
@@ -212,13 +212,16 @@ class _FrameSearch:
         It is gone from where it is expected, and nothing is there that it could have become. Hidden
         before the body it would explain such silhouettes best, and be lost.
         """
-        leaps = np.abs(self.pose - self.trusted)
+        places = self.evaluator.transforms(np.stack([self.pose, self.trusted]))[..., 3]
+        leaps = np.linalg.norm(places[0] - places[1], axis=1)
         odd = [
             (limb, part)
             for limb, part in self.tracker.sought
-            if part.role == "limb" and self.patient[limb]
-            if doubts[limb] or leaps[list(part.dofs)].max() > _LEAP_RAD
+            if part.role == "limb" and self.patient[limb] and np.isfinite(self.usual[limb])
+            if doubts[limb] or leaps[self.body.segment_joints[list(part.segments)]].max() > _LEAP_M
         ]
+        if not odd:
+            return False
         pose = self.pose.copy()
         for _, part in odd:
             pose[list(part.dofs)] = self.trusted[list(part.dofs)]

@@ -20,6 +20,11 @@ THICK_M = 0.045
 """Thinner differences are none."""
 _DROPPED = 0.6
 """Share of a limb's visible part that is background where a view has dropped it."""
+_IN_PLACE, _WITNESSES = 0.3, 2
+"""Share of it that is background at most in a view that shows it in its place; so many such views
+prove the others wrong."""
+_ALL_GONE = 0.85
+"""Share of it, in all views together, that is too much for a limb that has only moved."""
 _NEAR_M = 0.08
 """Beside a limb that a view has dropped, where it tells nothing either."""
 _REACHED = 1.15
@@ -103,20 +108,31 @@ def dropped(
 ) -> tuple[np.ndarray | None, ...]:
     """V pictures of where a limb should be seen in ``pose`` (D,), and is background for the most.
 
-    None in views that show most of it, or where the rest of the body hides it. The pictures reach
-    a little beyond the limb. ``metres`` (V,) are those that a pixel is wide.
+    None in views that show most of it, or where the rest of the body hides it, and in all views
+    where the limb may as well have moved: unless two views at least show it in its place, or nearly
+    all of it is gone in all views together. The pictures reach a little beyond the limb. ``metres``
+    (V,) are those that a pixel is wide.
     """
     others = [s for s in range(len(evaluator.body.segment_names)) if s not in segments]
-    found = []
-    for limb, rest, silhouette, metre in zip(
-        evaluator.silhouettes(pose, segments), evaluator.silhouettes(pose, others),
-        silhouettes, metres.tolist(), strict=True,
-    ):  # fmt: skip
-        visible = limb & ~rest & silhouette.observed
-        seen, gone = np.count_nonzero(visible), np.count_nonzero(visible & ~silhouette.foreground)
-        lost = seen * metre**2 > THICK_M**2 and gone > _DROPPED * seen
-        found.append(_beyond(limb, metre) if lost else None)
-    return tuple(found)
+    limbs = evaluator.silhouettes(pose, segments)
+    pictures = zip(limbs, evaluator.silhouettes(pose, others), silhouettes, strict=True)
+    counts = np.array([_seen_and_gone(*picture) for picture in pictures])
+    seen, gone = (counts * metres[:, None] ** 2).T
+    visible = seen > THICK_M**2
+    lost = visible & (gone > _DROPPED * seen)
+    in_place = visible & (gone < _IN_PLACE * seen)
+    if in_place.sum() < _WITNESSES and gone.sum() < _ALL_GONE * seen.sum():
+        lost[:] = False
+    return tuple(
+        _beyond(limb, metre) if drop else None
+        for limb, metre, drop in zip(limbs, metres.tolist(), lost.tolist(), strict=True)
+    )
+
+
+def _seen_and_gone(limb: np.ndarray, rest: np.ndarray, silhouette: Silhouette) -> tuple[int, int]:
+    """Px of a limb beside the rest of the body, and of those that are background."""
+    visible = limb & ~rest & silhouette.observed
+    return np.count_nonzero(visible), np.count_nonzero(visible & ~silhouette.foreground)
 
 
 def _beyond(drawn: np.ndarray, metre: float) -> np.ndarray:
