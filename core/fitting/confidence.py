@@ -3,7 +3,8 @@
 A logistic model of what a fit can know without the truth: how well the silhouettes fix the point,
 how far its limb's outline lies from the contours, and what of the footage and the limb is left
 unexplained. Its weights were found by maximum likelihood on takes with known motion, undisturbed
-and disturbed, points beyond 50 mm against the rest.
+and disturbed: points beyond 50 mm against the rest, those beyond 150 mm counted 40 times, as a
+point that is lost and not told costs more than one that is doubted in vain.
 """
 
 from dataclasses import dataclass
@@ -13,8 +14,11 @@ import numpy as np
 from ..body.body import POINT_NAMES
 from .limbs import limb_of
 
-WEIGHTS = np.array([1.5, -2.3, -0.3, -1.0, -3.0])
-"""Of 1, ln(spread / 10 mm), ln(residual / 10 mm), lumps in m^2 per view, and share unexplained."""
+WEIGHTS = np.array([1.308, -5.6, 1.982, -1.025, -1.111, -5.989, -7.369])
+"""Of 1, s = ln(spread / 10 mm) and its square where positive, ln(residual / 10 mm), lumps in m^2
+per view, share unexplained, and the root of the lumps beyond the usual ones."""
+_USUAL = 1.4
+"""Times the usual lumps that are usual, too."""
 _LEAST_M = 0.002
 _UNSEEN_M = 0.3
 """Residual of a limb that no view shows."""
@@ -28,23 +32,28 @@ class LimbSigns:
         residual: (5,) m, mean distance of its outline to the contours; NaN where no view shows it.
         lumps: (5,) m^2 per view of `Lumps` that it may explain.
         unexplained: (5,) share of what it covers that is background.
+        usual: (5,) lumps that the frames before had usually; infinite where there were none.
     """
 
     residual: np.ndarray
     lumps: np.ndarray
     unexplained: np.ndarray
+    usual: np.ndarray
 
 
 def features(point_spreads: np.ndarray, signs: LimbSigns) -> np.ndarray:
-    """(14, 5) what `WEIGHTS` weigh; ``point_spreads`` (14,) m are those of `Observability`."""
+    """(14, 7) what `WEIGHTS` weigh; ``point_spreads`` (14,) m are those of `Observability`."""
     limbs = [limb_of(name) for name in POINT_NAMES]
     residual = np.maximum(np.nan_to_num(signs.residual, nan=_UNSEEN_M), _LEAST_M)
+    spread = np.log(np.maximum(point_spreads, _LEAST_M) / 0.01)
     columns = (
         np.ones(len(limbs)),
-        np.log(np.maximum(point_spreads, _LEAST_M) / 0.01),
+        spread,
+        np.maximum(spread, 0.0) ** 2,
         np.log(residual / 0.01)[limbs],
         signs.lumps[limbs],
         signs.unexplained[limbs],
+        np.sqrt(np.maximum(signs.lumps - _USUAL * signs.usual, 0.0))[limbs],
     )
     return np.stack(columns, axis=1)
 

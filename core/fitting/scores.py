@@ -7,7 +7,7 @@ import numpy as np
 from ..energy.evaluator import Evaluator
 from ..silhouettes.silhouette import Silhouette
 from .confidence import LimbSigns, point_confidence
-from .limbs import limb_segments
+from .limbs import LIMB_NAMES, limb_segments
 from .lumps import Lumps
 from .observability import Observability
 from .part_search import metres_per_pixel
@@ -51,9 +51,16 @@ class FrameScores:
 
 
 def frame_scores(
-    evaluator: Evaluator, pose: np.ndarray, silhouettes: tuple[Silhouette, ...]
+    evaluator: Evaluator,
+    pose: np.ndarray,
+    silhouettes: tuple[Silhouette, ...],
+    usual: np.ndarray | None = None,
 ) -> FrameScores:
-    """Scores of ``pose`` (D,) against the V silhouettes."""
+    """Scores of ``pose`` (D,) against the V silhouettes.
+
+    ``usual`` (5,) are the `FrameScores.lumps` that other frames have usually; None where there are
+    no others.
+    """
     rendered = evaluator.silhouettes(pose)
     xor, union = np.array(
         [_differences(s, model) for s, model in zip(silhouettes, rendered, strict=True)]
@@ -79,7 +86,10 @@ def frame_scores(
     lumps = found.of_limbs(evaluator, pose, chosen, weights).sum(axis=0)
     explained, most = np.array([_explained(parts, silhouettes, weights) for parts in limbs]).T
     seen = Observability.of(evaluator, pose, silhouettes, weights, metres)
-    signs = LimbSigns(residual * metres.mean(), lumps / max(weights.sum(), 1e-9), 1.0 - explained)
+    trusted = max(float(weights.sum()), 1e-9)
+    usual = np.full(len(LIMB_NAMES), np.inf) if usual is None else usual
+    shares = (lumps / trusted, 1.0 - explained, usual / trusted)
+    signs = LimbSigns(residual * metres.mean(), *shares)
     return FrameScores(
         xor_px=xor,
         iou=iou,

@@ -20,7 +20,7 @@ from ..silhouettes.silhouette import Silhouette
 from .limbs import points_of
 from .scores import frame_scores
 from .tracker import Tracker
-from .tracking import FrameFit, History, track
+from .tracking import FrameFit, History, track, usual_lumps
 
 AGREED_M = 0.03
 """Two poses whose points are all nearer to each other are the same."""
@@ -89,13 +89,17 @@ class Course:
                 found.append((begin, end))
         return found
 
+    @property
+    def usual(self) -> np.ndarray:
+        """(5,) `FrameScores.lumps` that the frames have usually."""
+        return usual_lumps([fit.scores.lumps for fit in self.fits])
+
     def doubtful(self) -> np.ndarray:
         """(T,) bool, whether lumps are unusual in the take."""
         lumps = np.stack([fit.scores.lumps for fit in self.fits])
-        usual = np.quantile(lumps, 0.35, axis=0)
         lost = np.array([fit.scores.lost for fit in self.fits])
         locked = np.array([fit.locked for fit in self.fits])
-        return ((lumps > _UNUSUAL * usual + _LITTLE_M2).any(axis=1) | lost) & ~locked
+        return ((lumps > _UNUSUAL * self.usual + _LITTLE_M2).any(axis=1) | lost) & ~locked
 
 
 def looked_again(tracker: Tracker, course: Course, read: Read) -> Iterator[list[FrameFit]]:
@@ -105,7 +109,7 @@ def looked_again(tracker: Tracker, course: Course, read: Read) -> Iterator[list[
     """
     fits = list(course.fits)
     for stretch in course.stretches():
-        changed = dict(_joined(tracker, fits, stretch, course.fps, read))
+        changed = dict(_joined(tracker, fits, stretch, course, read))
         for index, fit in changed.items():
             fits[index] = fit
         yield list(changed.values())
@@ -115,7 +119,7 @@ def _joined(
     tracker: Tracker,
     fits: Sequence[FrameFit],
     stretch: tuple[int, int],
-    fps: float,
+    course: Course,
     read: Read,
 ) -> Iterator[tuple[int, FrameFit]]:
     """Index and fit of the frames of a stretch that change."""
@@ -132,13 +136,13 @@ def _joined(
         for i, poses, silhouettes in zip(indices, candidates, seen, strict=True)
     ]
     ends = [fits[i].pose for i in (indices[0] - 1, indices[-1] + 1) if 0 <= i < len(fits)]
-    path = _path(body, candidates, costs, ends if indices[0] else [None, *ends], fps)
+    path = _path(body, candidates, costs, ends if indices[0] else [None, *ends], course.fps)
     for index, k, poses, cost, silhouettes in zip(
         indices, path, candidates, costs, seen, strict=True
     ):
         ambiguous = abs(cost[0] - cost[1]) < 1.0 and _apart(body, poses[0], poses[1]) > APART_M
         if k or ambiguous:
-            scores = frame_scores(tracker.evaluator, poses[k], silhouettes)
+            scores = frame_scores(tracker.evaluator, poses[k], silhouettes, course.usual)
             if ambiguous:
                 apart = np.linalg.norm(np.diff(points(body, poses[:2]), axis=0)[0], axis=1)
                 likely = np.where(apart > APART_M, _EITHER, 1.0) * scores.confidence

@@ -3,7 +3,7 @@
 import logging
 import time
 from collections import deque
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 
@@ -47,6 +47,11 @@ class FrameFit:
     tally: Tally
     seconds: float
     locked: bool = False
+
+
+def usual_lumps(lumps: Sequence[np.ndarray]) -> np.ndarray:
+    """(5,) what is usual of `FrameScores.lumps`, n of (5,)."""
+    return np.quantile(lumps, _USUAL, axis=0)
 
 
 class History:
@@ -96,7 +101,7 @@ class History:
 
     @property
     def _usual(self) -> np.ndarray:
-        return np.quantile(self._lumps, _USUAL, axis=0) if self._lumps else np.full(5, np.inf)
+        return usual_lumps(self._lumps) if self._lumps else np.full(len(LIMB_NAMES), np.inf)
 
 
 def track(
@@ -110,12 +115,12 @@ def track(
     Frames among the ``locks`` have the pose (D,) given there, and the next one starts from it.
     """
     for frame, silhouettes in frames:
-        start = time.perf_counter()
+        start, past = time.perf_counter(), history.past
         if frame in locks:
             fit = PoseFit(locks[frame], 0, Tally())
         else:
-            fit = tracker.fit(silhouettes, history.past)
-        scores = frame_scores(tracker.evaluator, fit.pose, silhouettes)
+            fit = tracker.fit(silhouettes, past)
+        scores = frame_scores(tracker.evaluator, fit.pose, silhouettes, past.usual)
         history.add(fit.pose, scores.lumps, frame in locks)
         seconds = time.perf_counter() - start
         work = (frame, seconds, fit.tally.evaluated, fit.tally.outside_windows)

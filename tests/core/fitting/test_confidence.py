@@ -6,7 +6,12 @@ from silhouette_mocap.core.body.body import POINT_NAMES
 from silhouette_mocap.core.fitting.confidence import LimbSigns, point_confidence
 
 SPREADS = np.full(14, 0.006)
-WELL = LimbSigns(residual=np.full(5, 0.008), lumps=np.zeros(5), unexplained=np.full(5, 0.03))
+WELL = LimbSigns(
+    residual=np.full(5, 0.008),
+    lumps=np.full(5, 0.002),
+    unexplained=np.full(5, 0.03),
+    usual=np.full(5, 0.002),
+)
 ARM = [POINT_NAMES.index(name) for name in ("left_elbow", "left_wrist")]
 
 
@@ -20,6 +25,7 @@ BAD = LimbSigns(
     residual=with_arm(WELL.residual, 0.15),
     lumps=with_arm(WELL.lumps, 0.05),
     unexplained=with_arm(WELL.unexplained, 0.7),
+    usual=WELL.usual,
 )
 
 
@@ -39,10 +45,20 @@ def test_each_sign_of_error_lowers_the_confidence_of_its_own_points(sign):
     np.testing.assert_array_equal(found[others], well[others])
 
 
+def test_lumps_that_are_usual_count_less():
+    lumpy = replace(WELL, lumps=BAD.lumps)
+    usual = replace(lumpy, usual=BAD.lumps)
+    assert (point_confidence(SPREADS, usual)[ARM] > point_confidence(SPREADS, lumpy)[ARM]).all()
+    unknown = replace(lumpy, usual=np.full(5, np.inf))
+    np.testing.assert_array_equal(
+        point_confidence(SPREADS, unknown), point_confidence(SPREADS, usual)
+    )
+
+
 def test_all_signs_together_leave_no_doubt():
     assert (point_confidence(np.full(14, 0.1), BAD)[ARM] < 0.05).all()
 
 
 def test_a_limb_that_no_view_shows_is_unlikely():
-    unseen = LimbSigns(np.full(5, np.nan), np.zeros(5), np.ones(5))
+    unseen = LimbSigns(np.full(5, np.nan), np.zeros(5), np.ones(5), np.full(5, np.inf))
     assert (point_confidence(np.full(14, 0.3), unseen) < 0.05).all()
