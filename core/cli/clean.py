@@ -21,7 +21,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("result", type=Path, metavar="DIR", help="folder of the fit's result")
     parser.add_argument(
         "--smooth", type=float, metavar="HZ",
-        help="frequency of which half is left; lower is smoother (default: 6, or 3 for one-euro)",
+        help="frequency of which half is left; lower is smoother (default: 6, for one-euro 3; "
+        "at most 0.4 of the frame rate)",
     )  # fmt: skip
     parser.add_argument(
         "--filter", choices=FILTERS, default=REFIT,

@@ -13,7 +13,7 @@ import numpy as np
 LOW_M, HIGH_M = 0.05, 0.08
 SLOW, FAST = 0.10, 0.15
 """m/s"""
-SHORTEST_S = 0.1
+SPEED_S, SHORTEST_S = 0.03, 0.1
 FEET = ("left", "right")
 
 
@@ -37,7 +37,7 @@ def touching(places: np.ndarray, floor: float, rate: float) -> np.ndarray:
     if len(places) < 2:
         return np.zeros(places.shape[:2], bool)
     height = np.abs(places[..., 2] - floor)
-    speed = np.linalg.norm(np.gradient(places, axis=0), axis=2) * rate
+    speed = _speeds(places, rate)
     near = (height < HIGH_M) & (speed < FAST)
     sure = near & (height < LOW_M) & (speed < SLOW)
     fewest = max(2, round(SHORTEST_S * rate))
@@ -47,6 +47,15 @@ def touching(places: np.ndarray, floor: float, rate: float) -> np.ndarray:
             if run.stop - run.start >= fewest and sure[run, point].any():
                 found[run, point] = True
     return found
+
+
+def _speeds(places: np.ndarray, rate: float) -> np.ndarray:
+    """(T, P) m/s of points at places (T, P, 3), from `SPEED_S` before to as much after."""
+    reach = max(1, round(SPEED_S * rate))
+    frames = np.arange(len(places))
+    before, after = np.maximum(frames - reach, 0), np.minimum(frames + reach, len(places) - 1)
+    moved = np.linalg.norm(places[after] - places[before], axis=2)
+    return moved * rate / (after - before)[:, None]
 
 
 def stretches(marked: np.ndarray) -> list[slice]:

@@ -11,6 +11,7 @@ import numpy as np
 
 from ...body.body import POINT_NAMES, Body
 from ...body.kinematics import joint_transforms, posed_segment
+from ...errors import MocapError
 
 _FRONT = np.array([0.0, -1.0, 0.0])
 _THICK_M = 0.015
@@ -35,7 +36,11 @@ class Soles:
 
     @classmethod
     def of(cls, body: Body) -> "Soles":
-        """Those of ``body``; its feet are what moves with the ankles."""
+        """Those of ``body``; its feet are what moves with the ankles.
+
+        Raises:
+            MocapError: nothing of the body's surface does.
+        """
         transforms = joint_transforms(body, body.rest_pose[None])[0]
         rows = []
         for foot, side in enumerate(("left", "right")):
@@ -58,9 +63,11 @@ def _foot_ends(body: Body, ankle: int, transforms: np.ndarray) -> list[tuple[int
         if parent in chain:
             chain.append(joint)
     vertices = {joint: _vertices(body, joint, transforms) for joint in chain}
-    chain = [joint for joint in chain if len(vertices[joint])]
-    level = min(vertices[joint][:, 2].min() for joint in chain)
-    soles = {j: v[v[:, 2] <= level + _THICK_M] for j, v in vertices.items() if len(v)}
+    vertices = {joint: own for joint, own in vertices.items() if len(own)}
+    if not vertices:
+        raise MocapError(f"the body {body.name} has no feet", "clean with --no-contacts")
+    level = min(own[:, 2].min() for own in vertices.values())
+    soles = {joint: own[own[:, 2] <= level + _THICK_M] for joint, own in vertices.items()}
     soles = {joint: sole for joint, sole in soles.items() if len(sole)}
     ends = [(min(soles), _end(soles[min(soles)], -_FRONT))]
     for joint in list(soles)[1:]:

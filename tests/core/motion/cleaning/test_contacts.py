@@ -73,6 +73,12 @@ def test_noise_of_a_centimetre_leaves_the_contacts_what_they_are(walk):
     assert [contact.foot for contact in shaken] == [contact.foot for contact in calm]
 
 
+def test_noise_of_a_millimetre_at_240_frames_per_second_breaks_no_contact():
+    """Speeds are taken over a time and not over a frame: 1 mm is 0.17 m/s from frame to frame."""
+    places = np.random.default_rng(1).normal(0, 0.0007, (480, 2, 3))
+    assert touching(places, 0.0, 240.0).all()
+
+
 def test_the_floor_may_lie_anywhere(walk):
     _, places, _ = planned(walk, 30.0)
     found, raised = touching(places, 0.0, 30.0), places + np.array([0, 0, 1.5])

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from moving import rms, stepping
 from silhouette_mocap.core.body.kinematics import joint_transforms, within_limits
+from silhouette_mocap.core.errors import MocapError
 from silhouette_mocap.core.motion.cleaning.block_band import BlockBand
 from silhouette_mocap.core.motion.cleaning.contacts import slides, stretches, touching
 from silhouette_mocap.core.motion.cleaning.foot_lock import Floor, FootLock
@@ -14,6 +15,7 @@ from synthetic import small_body
 BODY = small_body("performer")
 SOLES = Soles.of(BODY)
 RATE = 30.0
+SIDES = ("left", "right")
 
 
 def soles_in(poses, body=BODY):
@@ -157,6 +159,13 @@ def test_soles_lie_on_the_floor_of_the_rest_pose_heel_to_tip(name, ends):
         assert len(own) == ends and (sign * own[:, 0] > 0.05).all()
         assert (np.diff(own[:, 1]) < -0.03).all()
         assert 0.2 < np.ptp(own[:, 1]) < 0.32
+
+
+def test_a_body_without_feet_is_refused():
+    joints = [BODY.joint_names.index(f"{side}_{j}") for side in SIDES for j in ("ankle", "toes")]
+    elsewhere = np.where(np.isin(BODY.segment_joints, joints), 0, BODY.segment_joints)
+    with pytest.raises(MocapError, match="has no feet; clean with --no-contacts"):
+        Soles.of(replace(BODY, segment_joints=elsewhere))
 
 
 def test_a_step_is_found_and_its_swing_is_not_held():
