@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import math
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext
 from dataclasses import dataclass
@@ -125,6 +126,8 @@ def clean_result(
         MocapError: the settings do not suit the motion, or a file cannot be written.
     """
     height = result.floor if floor is None and settings.contacts else floor or 0.0
+    if not math.isfinite(height):
+        raise MocapError(f"a floor at {height} m is none", "give its height, such as --floor 0")
     found = cleaned(result.body, result.motion, settings, height, progress)
     report = {**result.report, _SECTION: found.as_dict()}
     files = tuple(result.folder / name for name in (MOTION, REPORT, PAGE))

@@ -88,6 +88,11 @@ def _(folder: Path):
     return clean_words(out)
 
 
+@CLEANING.add("a floor that is nowhere", "a floor at nan m is none", "--floor 0", early=False)
+def _(folder: Path):
+    return clean_words(fitted(folder), "--floor", "nan")
+
+
 @CLEANING.add("a motion lost all over", "all frames are lost", "fit the take again", early=False)
 def _(folder: Path):
     out = fitted(folder)

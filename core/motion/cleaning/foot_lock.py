@@ -5,10 +5,11 @@ The change c of root position and leg angles, over the whole take at once, minim
     sum_t |c_t / s|^2 + penalty * sum_t |(c_(t-1) - 2 c_t + c_(t+1)) / s|^2
 
 under the conditions that a point of a sole which touches the floor in two frames in a row is in the
-same place in both, and on the floor, that no point of a sole is below the floor, and that limits
-hold. As the change as a whole is smooth, it comes and goes by itself before and after a contact,
-within about 0.15 s, and nothing pops at its ends. Where a foot stands is left to the minimum, so
-heel and ball, which a rigid foot keeps apart, need no places that would contradict each other.
+same place in both, that no point of a sole is below the floor, and that limits hold. As the change
+as a whole is smooth, it comes and goes by itself before and after a contact, within about 0.15 s,
+and nothing pops at its ends. Where a foot stands is left to the minimum, so heel and ball, which a
+rigid foot keeps apart, need no places that would contradict each other; what touches the floor is
+drawn to it but gently, as legs that are a centimetre too short would take the whole body along.
 
 The conditions are linearised about the motion so far (Gauss-Newton) and enter as stiff springs, of
 inequalities those that are violated. Frames couple with their next two alone: the equations form
