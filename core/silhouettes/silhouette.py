@@ -29,11 +29,11 @@ class Silhouette:
         The boundary runs between pixels, so no centre is nearer than half a pixel.
         """
         inside = self.foreground.view(np.uint8)
-        distances = cv2.distanceTransform(1 - inside, cv2.DIST_L2, cv2.DIST_MASK_PRECISE) - 0.5
+        distances = _depths(1 - inside) - 0.5
         x, y, width, height = cv2.boundingRect(inside)
         # with a rim of one pixel, where the nearest ones outside lie
         rows, columns = slice(max(y - 1, 0), y + height + 1), slice(max(x - 1, 0), x + width + 1)
-        depths = cv2.distanceTransform(inside[rows, columns], cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
+        depths = _depths(inside[rows, columns])
         np.subtract(0.5, depths, out=distances[rows, columns], where=self.foreground[rows, columns])
         return distances
 
@@ -41,3 +41,12 @@ class Silhouette:
     def contour(self) -> ObservedContour:
         """Where the foreground ends."""
         return ObservedContour.of(self.foreground, self.observed, self.distances)
+
+
+def _depths(mask: np.ndarray) -> np.ndarray:
+    """(H, W) float32 px from each pixel of a mask (H, W) uint8 to the nearest that is 0.
+
+    The last bit of OpenCV's roots depends on where in memory they lie; their squares are whole.
+    """
+    depths = cv2.distanceTransform(mask, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
+    return np.sqrt(np.rint(depths * depths))
