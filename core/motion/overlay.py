@@ -57,7 +57,7 @@ def overlay_picture(tiles: Sequence[Tile], title: str) -> np.ndarray:
 
 def coloured(tile: Tile) -> np.ndarray:
     """(H, W, 3) uint8 BGR footage, grey, with the two silhouettes over it; unobserved px darker."""
-    grey = np.asarray(cv2.cvtColor(tile.footage, cv2.COLOR_BGR2GRAY))
+    grey = cv2.cvtColor(tile.footage, cv2.COLOR_BGR2GRAY).astype(np.uint8, copy=False)
     grey[~tile.silhouette.observed] //= 3
     kinds = tile.silhouette.foreground.view(np.uint8) + 2 * tile.rendered.view(np.uint8)
     return _shades()[kinds, grey]
