@@ -3,7 +3,7 @@
 All joints are filtered alike, so that errors of root and limbs that cancel each other at hands and
 feet still do. How much the fit's values count follows from its confidence: read as the probability
 that a normal error in the plane stays below 50 mm, it tells a spread; weights fall with its square
-where it is beyond 12 mm, which stronger smoothing answers: a spread twice as large lowers the
+where it is beyond 20 mm, which stronger smoothing answers: a spread twice as large lowers the
 cut-off by 30 %.
 """
 
@@ -21,7 +21,7 @@ from .paths import bridged_values, smoothed_rotations
 from .refit import Refit
 from .settings import REFIT, CleanSettings
 
-_SURE_M, _CONFIDENT_M = 0.012, 0.05
+_SURE_M, _CONFIDENT_M = 0.02, 0.05
 _LEAST_WEIGHT = 1e-3
 _FASTEST_RAD, _FASTEST_M = 1000.0, 60.0
 """Accelerations per s² that nobody exceeds: of a joint, and of the whole body."""

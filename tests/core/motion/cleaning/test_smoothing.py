@@ -113,7 +113,7 @@ def test_doubt_is_answered_with_stronger_smoothing(truth):
 
 
 def test_weights_fall_with_the_square_of_the_spread():
-    spreads = np.array([0.006, 0.012, 0.024, 0.048])
+    spreads = np.array([0.01, 0.02, 0.04, 0.08])
     confidence = 1 - np.exp(-(0.05**2) / (2 * spreads**2))
     weights = frame_weights(np.repeat(confidence[:, None], 14, axis=1))
     assert np.allclose(weights, [1, 1, 1 / 4, 1 / 16])
