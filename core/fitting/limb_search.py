@@ -9,7 +9,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import qmc
 
 from ..body.body import Body, Part
 from ..body.kinematics import clamped
@@ -132,6 +131,9 @@ def _next_generation(
 
 def _everywhere(cost: LimbCost, count: int) -> np.ndarray:
     """(count, D) poses spread over the range of the limb's grid, or all its DOFs without one."""
+    # scipy.stats takes a while to load, which no other command should wait for
+    from scipy.stats import qmc
+
     dofs = list(cost.part.grid or cost.part.dofs)
     limits = cost.body.dofs.limits[dofs]
     limbs = np.repeat(cost.pose[None], count, axis=0)

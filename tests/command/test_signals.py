@@ -59,11 +59,12 @@ def paused_in_frame_two(small_take, out) -> subprocess.Popen:
     return process
 
 
-def check_that_it_kept_two_frames(process: subprocess.Popen, out):
+def check_that_it_kept_three_frames(process: subprocess.Popen, out):
+    """A frame is told of once it is kept; by then the next one has been found."""
     rest = process.stderr.read()
     assert process.wait(30) == 130, rest
-    np.testing.assert_array_equal(read_motion(out / "motion.npz").frames, [0, 1])
-    assert "the 2 finished frames are kept" in rest and "interrupted" in rest
+    np.testing.assert_array_equal(read_motion(out / "motion.npz").frames, [0, 1, 2])
+    assert "the 3 finished frames are kept" in rest and "interrupted" in rest
     assert "Traceback" not in rest
 
 
@@ -72,7 +73,7 @@ def check_that_it_kept_two_frames(process: subprocess.Popen, out):
 def test_a_signal_ends_a_fit_with_130_and_its_finished_frames(small_take, tmp_path, number):
     process = paused_in_frame_two(small_take, tmp_path)
     process.send_signal(number)
-    check_that_it_kept_two_frames(process, tmp_path)
+    check_that_it_kept_three_frames(process, tmp_path)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of another kind")
@@ -83,4 +84,4 @@ def test_signals_until_the_very_end_change_nothing(small_take, tmp_path, pause):
         process.send_signal(signal.SIGINT)
         process.send_signal(signal.SIGTERM)
         time.sleep(pause)
-    check_that_it_kept_two_frames(process, tmp_path)
+    check_that_it_kept_three_frames(process, tmp_path)
