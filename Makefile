@@ -66,7 +66,7 @@ takes ?=
 bench-tracking: .venv/.ready ## Errors and speed of the trackers, into out/bench; takes="a/take.toml b/take.toml" for others
 	@$(MOCAP) bench tracking $(takes) --json out/bench/tracking.json --out out/bench
 
-speed: ## Put what make bench measured into the README
+speed: ## Put what make bench and make bench-tracking measured into the README
 	@.venv/bin/python .ci/speed.py out/bench
 
 fuzz: .venv/.ready ## 10,000 damaged takes, calibrations and masks through a real command

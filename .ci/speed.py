@@ -1,6 +1,6 @@
-"""Puts what ``make bench`` measured into the README: its block on speed, and the plots beside it.
+"""Puts what was measured into the README, block by block, and the plots beside it.
 
-python .ci/speed.py out/bench
+python .ci/speed.py out/bench        whatever `make bench` and `make bench-tracking` left there
 """
 
 import re
@@ -10,22 +10,31 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 PICTURES = ROOT / "core" / "bench" / "plots"
-BLOCK = re.compile(r"(<!-- speed: begin[^\n]*-->\n).*?(<!-- speed: end -->)", re.DOTALL)
+SECTIONS = {"readme.md": "speed", "tracking_readme.md": "tracking"}
+"""File of the folder and name of its block."""
 
 
 def main(folder: Path) -> None:
-    """Rewrites the block; ``folder`` holds readme.md and the plots."""
+    """Rewrites the blocks whose files ``folder`` holds, and takes its plots over."""
     readme = ROOT / "README.md"
-    section = (folder / "readme.md").read_text("utf-8")
-    text, count = BLOCK.subn(
-        lambda found: f"{found[1]}\n{section}\n{found[2]}", readme.read_text("utf-8")
-    )
-    if count != 1:
-        sys.exit(f"{readme} has no block between <!-- speed: begin --> and <!-- speed: end -->")
+    text = readme.read_text("utf-8")
+    for name, block in SECTIONS.items():
+        file = folder / name
+        if file.is_file():
+            text = with_block(text, block, file.read_text("utf-8"))
     readme.write_text(text, "utf-8", newline="\n")
     PICTURES.mkdir(exist_ok=True)
     for picture in folder.glob("*.svg"):
         shutil.copyfile(picture, PICTURES / picture.name)
+
+
+def with_block(text: str, block: str, section: str) -> str:
+    """``text`` with ``section`` between the marks of ``block``."""
+    marks = rf"(<!-- {block}: begin[^\n]*-->\n).*?(<!-- {block}: end -->)"
+    found, count = re.subn(marks, lambda m: f"{m[1]}\n{section}\n{m[2]}", text, flags=re.DOTALL)
+    if count != 1:
+        sys.exit(f"the README has no block <!-- {block}: begin --> to <!-- {block}: end -->")
+    return found
 
 
 if __name__ == "__main__":

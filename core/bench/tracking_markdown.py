@@ -12,6 +12,7 @@ from .tracking_torments import BACK_MM
 from .tracking_trials import ABLATION, CAMERAS, LADDER, RATES, TAKES, TORMENTS
 
 _FIGURES = {
+    "frames": ("frames", 0),
     "absolute": ("absolute_mm", 1),
     "offset removed": ("offset_removed_mm", 1),
     "p95": ("p95_mm", 1),
@@ -28,6 +29,7 @@ _HEADS = {
     CAMERAS: ("take", "cameras"),
     RATES: ("take", "frames/s"),
 }
+_README_PLOTS = ("tracking_torments", "tracking_noise")
 _UNKNOWN = "–"
 
 
@@ -60,14 +62,14 @@ def readme_section(
     speed: SpeedFigures,
     folder: str,
 ) -> str:
-    """The README's part; the plots lie in ``folder``, relative to it."""
+    """The README's part, with two of the plots, which lie in ``folder``, relative to it."""
     parts = [
         f"Measured on {machine_words(machine)}. Errors in mm, the worst first.",
         figures_table(TAKES, rows[TAKES]),
         torments_table(rows[TORMENTS]),
         speed_table(speed),
         confidence_table(confidence),
-        *(f"![{title}]({folder}/{name}.svg)" for name, title in PLOTS.items()),
+        *(f"![{PLOTS[name]}]({folder}/{name}.svg)" for name in _README_PLOTS),
     ]
     return "\n\n".join(parts) + "\n"
 

@@ -144,8 +144,8 @@ def torments(recording: Recording, place: float, number: int) -> list[Torment]:
     before = FrozenCamera(max(begin - 1, frames[0]))
     who = recording.cameras[camera[0]].name
     return [
-        Torment("arm bitten off, all cameras", side, bite, Only(arm, bite)),
-        Torment("arm bitten off, every other camera", side, bite, Only(arm, bite, half)),
+        Torment("arm bitten off, all views", side, bite, Only(arm, bite)),
+        Torment("arm bitten off, half the views", side, bite, Only(arm, bite, half)),
         Torment("blob on the hand", side, bite, Only(blob, bite)),
         Torment("camera dead for 1 s", who, second, Only(DeadCamera(), second, camera)),
         Torment("camera frozen for 1 s", who, second, Only(before, second, camera)),
