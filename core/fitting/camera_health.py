@@ -24,6 +24,7 @@ _SURE = 4.0
 """Standard deviations."""
 _LEAST_DELAY, _LEAST_PX, _LEAST_TURN_DEG = 0.3, 0.8, 0.6
 _LEAST_SWELLING_PX, _LEAST_SWELLING_M = 1.0, 0.015
+_KINDS = {"dead": "dead", "frozen": "frozen", "bad": "bad silhouettes"}
 _WHOLE = 0.2
 """Of a frame, by which a delay may be off a whole number of frames."""
 _ONE_SIDED = 2.0
@@ -38,7 +39,7 @@ class CameraFinding:
         camera: its name.
         kind: "dead", "frozen", "bad silhouettes", "delay", "place" or "swelling".
         frames: first and last, inclusive.
-        figures: by name, see `report.json` in the README.
+        figures: how much, by name: trust and shares, or the `OFFSETS` in px, degrees and frames.
         text: a sentence for the user, with a remedy.
         perhaps: names of cameras one of which may be meant instead.
     """
@@ -65,17 +66,23 @@ def camera_findings(
     telling = _Telling(evaluator.cameras, [fit.frame for fit in fits])
     stretches = Stretches(evaluator, fits, read)
     found = [telling.silent(stretch) for stretch in stretches.silent_ones()]
-    offsets: list[Offset] = []
-    if len(fits) > 2 * _FEWEST_MOMENTS:
+    chosen, offsets = _moments(len(fits)), []
+    if chosen:
         metres = metres_at(evaluator, fits[len(fits) // 2].pose)
-        count = min(max(len(fits) // _EVERY, _FEWEST_MOMENTS), _MOST_MOMENTS)
-        chosen = np.linspace(1, len(fits) - 2, count).round().astype(int).tolist()
         comparison = ViewComparison(evaluator, fits, read, chosen, stretches.silent)
         offsets = comparison.offsets(lambda offset: _is_worth_telling(offset, metres))
         found += [telling.offset(offset, chosen) for offset in offsets]
     explained = {view for offset in offsets for view in (offset.view, *offset.rivals)}
     others = [view for view in range(len(evaluator.cameras)) if view not in explained]
     return (*found, *(telling.bad(stretch) for stretch in stretches.bad_ones(others)))
+
+
+def _moments(frames: int) -> list[int]:
+    """Indices of the frames that are compared; none of too few."""
+    if frames <= 2 * _FEWEST_MOMENTS:
+        return []
+    count = min(max(frames // _EVERY, _FEWEST_MOMENTS), _MOST_MOMENTS)
+    return np.linspace(1, frames - 2, count).round().astype(int).tolist()
 
 
 def _is_worth_telling(offset: Offset, metres: np.ndarray) -> bool:
@@ -102,7 +109,7 @@ class _Telling:
             "frozen": "its pictures do not change while the performer moves; "
             "repair its footage, or leave it out",
         }[stretch.kind]
-        return self._of_stretch(stretch, stretch.kind, f"is {stretch.kind}", what)
+        return self._of_stretch(stretch, f"is {stretch.kind}", what, {})
 
     def bad(self, stretch: Stretch) -> CameraFinding:
         what = "its silhouettes are not where those of the others are"
@@ -112,15 +119,17 @@ class _Telling:
             what = f"it lacks {stretch.missing:.0%} of the performer"
         what += f", and counts for only {stretch.trust:.0%}; look at its silhouettes there"
         figures = {"missing": stretch.missing, "surplus": stretch.surplus}
-        return self._of_stretch(stretch, "bad silhouettes", "is segmented badly", what, figures)
+        return self._of_stretch(stretch, "is segmented badly", what, figures)
 
-    def _of_stretch(self, stretch, kind, how, what, figures=None) -> CameraFinding:
+    def _of_stretch(
+        self, stretch: Stretch, how: str, what: str, figures: dict[str, float]
+    ) -> CameraFinding:
         name, frames = self._cameras[stretch.view].name, self._frames
         first, last = frames[stretch.first], frames[stretch.last]
         when = f"in frame {first}" if first == last else f"in frames {first} to {last}"
         text = f"camera {name} {how} {when}: {what}"
-        figures = {"trust": stretch.trust, **(figures or {})}
-        return CameraFinding(name, kind, (first, last), text, figures)
+        figures = {"trust": stretch.trust, **figures}
+        return CameraFinding(name, _KINDS[stretch.kind], (first, last), text, figures)
 
     def offset(self, offset: Offset, chosen: Sequence[int]) -> CameraFinding:
         camera = self._cameras[offset.view]

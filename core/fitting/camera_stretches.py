@@ -22,13 +22,17 @@ _NOBODY = 0.05
 """Share of what the model covers, that is nobody."""
 _VISIBLE_M2 = 0.1
 """Of the model, that a camera has to show."""
-_DOUBTED, _IGNORED = 0.6, 0.4
+_DOUBTED, _IGNORED = 0.7, 0.6
 """Trust in a view under which something may be wrong, and is worth telling."""
+_FALLEN, _USUALLY = 0.06, 0.8
+"""IoU that a view has lost beside the others, where its pictures may have stopped, and the
+quantile of what it usually has."""
 _SAME, _MOVED = 0.01, 0.1
 """Share of the area that differs between pictures that are the same, and of a model that moved."""
 _GAP, _SHORTEST, _BAD = 3, 2, 5
 """Frames: between stretches that are one, of a stretch, and of one with bad silhouettes."""
-_LOOKS = 5
+_MOST, _LOOKS = 3, 5
+"""Stretches of a kind that are told of a view, and frames of one that are read."""
 
 
 @dataclass(frozen=True)
@@ -81,25 +85,30 @@ class Stretches:
         return found
 
     def bad_ones(self, views: Sequence[int]) -> list[Stretch]:
-        """Where one of ``views`` is hardly trusted, and it is not known why."""
+        """Where one of ``views`` is hardly trusted, and it is not known why.
+
+        Of two views alone, neither can be trusted more than the other.
+        """
         found = []
-        for view in views:
+        for view in views if self._trust.shape[1] > 2 else ():
             doubted = (self._trust[:, view] < _DOUBTED) & ~self.silent[:, view]
-            for first, last in runs(doubted, _GAP):
-                trust = self._mean_trust(view, first, last)
-                if last - first + 1 >= _BAD and trust < _IGNORED:
-                    shares = self._shares(view, first, last)
-                    found.append(Stretch(view, "bad", first, last, trust, *shares))
+            for first, last in _few_runs(doubted, _GAP, _BAD):
+                within = np.flatnonzero(doubted[first : last + 1]) + first
+                trust = float(self._trust[within, view].mean())
+                if trust < _IGNORED:
+                    found.append(
+                        Stretch(view, "bad", first, last, trust, *self._shares(view, within))
+                    )
         return found
 
     def _dead(self, view: int) -> list[Stretch]:
         others = np.delete(self._iou, view, axis=1)
-        tracked = np.nanmedian(np.where(np.isfinite(others), others, 0.0), axis=1) > _TRACKED
+        tracked = _median_of_rows(others) > _TRACKED
         apart = (self._iou[:, view] < _APART) & tracked
         return [
             Stretch(view, "dead", first, last, self._mean_trust(view, first, last))
-            for first, last in runs(apart, 0)
-            if last - first + 1 >= _SHORTEST and self._shows_nobody(view, (first + last) // 2)
+            for first, last in _few_runs(apart, 0, _SHORTEST)
+            if self._shows_nobody(view, int(np.flatnonzero(apart[first:])[0]) + first)
         ]
 
     def _shows_nobody(self, view: int, index: int) -> bool:
@@ -111,9 +120,11 @@ class Stretches:
         return drawn * metre**2 > _VISIBLE_M2 and seen < _NOBODY * drawn
 
     def _frozen(self, view: int) -> list[Stretch]:
-        doubted = (self._trust[:, view] < _DOUBTED) & ~self.silent[:, view]
+        beside = np.nan_to_num(self._iou[:, view]) - _median_of_rows(self._iou)
+        fallen = beside < np.quantile(beside, _USUALLY) - _FALLEN
+        doubted = (fallen | (self._trust[:, view] < _DOUBTED)) & ~self.silent[:, view]
         found: list[Stretch] = []
-        for begin, end in runs(doubted, _GAP):
+        for begin, end in _runs(doubted, _GAP):
             if end - begin + 1 < _SHORTEST or any(s.first <= begin <= s.last for s in found):
                 continue
             early, middle, late = (round(begin + k * (end - begin) / 4) for k in (1, 2, 3))
@@ -138,10 +149,11 @@ class Stretches:
             last = index
         return last
 
-    def _shares(self, view: int, first: int, last: int) -> tuple[float, float]:
+    def _shares(self, view: int, indices: np.ndarray) -> tuple[float, float]:
         """Missing and surplus, see `Stretch`."""
         found = []
-        for index in np.unique(np.linspace(first, last, _LOOKS).round().astype(int)).tolist():
+        looks = np.linspace(0, len(indices) - 1, _LOOKS).round().astype(int)
+        for index in np.unique(indices[looks]).tolist():
             seen, model = self._seen(view, index), self._drawn(view, index)
             model = model & seen.observed
             differing = (model & ~seen.foreground, seen.foreground & ~model)
@@ -159,7 +171,7 @@ class Stretches:
         return float(self._trust[first : last + 1, view].mean())
 
 
-def runs(flags: np.ndarray, gap: int) -> list[tuple[int, int]]:
+def _runs(flags: np.ndarray, gap: int) -> list[tuple[int, int]]:
     """First and last index of the stretches where ``flags`` (T,) hold, gaps of ``gap`` bridged."""
     found: list[tuple[int, int]] = []
     for index in np.flatnonzero(flags).tolist():
@@ -168,6 +180,20 @@ def runs(flags: np.ndarray, gap: int) -> list[tuple[int, int]]:
         else:
             found.append((index, index))
     return found
+
+
+def _few_runs(flags: np.ndarray, gap: int, shortest: int) -> list[tuple[int, int]]:
+    """The `_runs` that are not too short, joined over wider gaps where they are many."""
+    while True:
+        found = [run for run in _runs(flags, gap) if run[1] - run[0] + 1 >= shortest]
+        if len(found) <= _MOST:
+            return found
+        gap = 2 * gap + 1
+
+
+def _median_of_rows(iou: np.ndarray) -> np.ndarray:
+    """(T,) over views (T, V), those without anything counting as 0."""
+    return np.median(np.nan_to_num(iou), axis=1)
 
 
 def _differing(one: np.ndarray, other: np.ndarray) -> float:

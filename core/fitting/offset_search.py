@@ -19,7 +19,7 @@ _FEWEST = 3
 """Moments before and after a change."""
 _CHANGED = 1.5
 """Times what a lasting offset explains, that one which begins later has to."""
-_ALIKE = 0.4
+_ALIKE = 0.2
 """Share of what a view's lie explains, that another view's can explain as well."""
 _STANDS_OUT = 5.0
 """Times what offsets of the same kind explain in the other views."""

@@ -6,6 +6,7 @@ the outlines of the frames before and after are looked at, too; of two ends the 
 """
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -20,8 +21,10 @@ _ROUNDS, _SETTLED = 6, 0.05
 _SHIFTS = (-2, -1, 0, 1, 2)
 _BETTER = 0.85
 """Of the misfit, at which another frame's outlines are worth a try."""
-_EXPLAINED = 0.8
-"""Of a view's misfit, that offsets have to leave at most."""
+_EXPLAINED = 0.08
+"""Of a view's misfit, that its offsets have to take away from all views together."""
+_NOWHERE = 0.25
+"""Misfit of a view whose outlines fit nowhere, wherever they are moved."""
 _DELAY = OFFSETS.index("delay")
 
 
@@ -64,23 +67,31 @@ class ViewComparison:
             other, other_known = self._settled(nothing + late, is_enough)
             if self._misfits(other_known).sum() < self._misfits(known).sum():
                 found, known = other, other_known
-        return self._proved(found, known) if found else []
+        return self._proved(found, known)
 
     def _proved(self, found: Sequence[Offset], known: np.ndarray) -> list[Offset]:
-        """Without those of views that fit no better with their offsets.
+        """Those of views without whose offsets outlines fit clearly worse, poses let go."""
+        if not found:
+            return []
+        misfits, proved = self._freed_misfits(known), []
+        for view in {offset.view for offset in found}:
+            without = known.copy()
+            without[:, view] = 0.0
+            before = self._freed_misfits(without)
+            explained = before.sum() - misfits.sum() > _EXPLAINED * before[:, view].sum()
+            if explained and misfits[:, view].mean() < _NOWHERE:
+                proved.append(view)
+        return [offset for offset in found if offset.view in proved]
 
-        Where one of two views lies, both fit as badly as before: the poses lie between them.
-        """
-        after = self._misfits(known)
-        before = self._misfits(np.zeros_like(known))
-        unproved = {
-            offset.view
-            for offset in found
-            if not offset.rivals
-            and after[offset.begin :, offset.view].sum()
-            > _EXPLAINED * before[offset.begin :, offset.view].sum()
-        }
-        return [offset for offset in found if offset.view not in unproved]
+    def _freed_misfits(self, known: np.ndarray) -> np.ndarray:
+        """(T, V) with offsets (T, V, 5), for poses that are not pulled by them."""
+        moments = [self._moment(k, offsets) for k, offsets in enumerate(known)]
+        steps = [self._equations.freed(moment) for moment in moments]
+        freed = (
+            replace(moment, poses=moment.poses + step)
+            for moment, step in zip(moments, steps, strict=True)
+        )
+        return np.stack([self._equations.misfits(moment) for moment in freed])
 
     def _settled(
         self, known: np.ndarray, is_enough: Callable[[Offset], bool]

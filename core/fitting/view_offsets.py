@@ -66,6 +66,17 @@ class OffsetEquations:
 
     def of(self, moment: Moment) -> tuple[np.ndarray, np.ndarray]:
         """(P, P) and (P,) of one moment: of the squared distances' sum, in m^2, halved."""
+        own, mixed, sums = self._whole(moment)
+        reduced = sums - mixed.T @ np.linalg.solve(own, mixed)
+        return reduced[:-1, :-1], reduced[:-1, -1]
+
+    def freed(self, moment: Moment) -> np.ndarray:
+        """(D,) what the pose would change, if it had not been pulled by what is ``known``."""
+        own, mixed, _ = self._whole(moment)
+        return -np.linalg.solve(own, mixed @ np.r_[moment.known.ravel(), 0.0, 1.0])
+
+    def _whole(self, moment: Moment) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """(D, D), (D, P + 1) and (P + 1, P + 1), the last of P + 1 being the distances."""
         poses = moment.poses[1]
         metres = metres_at(self._evaluator, poses[0])
         outlines = self._evaluator.outline(poses, None, float(_SPACING_M / metres.max()))
@@ -89,8 +100,7 @@ class OffsetEquations:
             own += np.moveaxis(by_joint[:, :, :6], 1, 0).reshape(dofs, -1) @ across.T
             mixed[:, places] += by_joint[:, :, 6:].sum(axis=0) * scales
             sums[np.ix_(places, places)] += joined[:, 6:, 6:].sum(axis=0) * np.outer(scales, scales)
-        reduced = sums - mixed.T @ np.linalg.solve(own, mixed)
-        return reduced[:-1, :-1], reduced[:-1, -1]
+        return own, mixed, sums
 
     def misfits(self, moment: Moment) -> np.ndarray:
         """(V,) robust mean distances between outlines and contours, from 0 to 1."""

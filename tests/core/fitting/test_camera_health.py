@@ -147,14 +147,14 @@ def test_a_camera_that_is_knocked_over_is_told_with_the_frame(scene):
     assert "it was moved then" in finding.text
 
 
-@pytest.mark.parametrize(("px", "size"), [(2, "larger"), (-2, "smaller")])
+@pytest.mark.parametrize(("px", "size"), [(2, "larger"), (-1, "smaller")])
 def test_silhouettes_that_are_larger_or_smaller_all_round_are_told(scene, px, size):
     def lie(frame, silhouette):
         return Silhouette(silhouette.distances < px, silhouette.observed)
 
     finding = only(found_in(scene, lied(scene, lie)), "swelling")
-    # of arms two px wider than the shrinking nothing is left, from where contours look further away
-    assert finding.figures["larger_px"] == pytest.approx(px, abs=0.9)
+    # thin limbs vanish when they shrink
+    assert finding.figures["larger_px"] == pytest.approx(px, abs=0.5)
     assert f"px {size} all round than the others'" in finding.text
 
 
