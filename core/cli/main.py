@@ -36,6 +36,8 @@ COMMANDS = {
 }
 # OpenCV reads it when it is loaded, by the commands: a damaged file may claim any number of pixels
 os.environ.setdefault("OPENCV_IO_MAX_IMAGE_PIXELS", str(50_000_000))
+# matrices here are small: more threads of numpy's own would only wait for each other
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 _DISK_FAULTS = (errno.ENOSPC, errno.EACCES, errno.EROFS, errno.EDQUOT, errno.EPERM)
 _log = logging.getLogger(__name__)
 

@@ -20,7 +20,7 @@ JPEG_QUALITY = (cv2.IMWRITE_JPEG_QUALITY, 90)
 _LEGEND = ((BOTH, "both"), (MODEL_ONLY, "model only"), (OBSERVED_ONLY, "performer only"))
 _LINE = (70, 70, 70)
 _STRIP_HEIGHT = 24
-_TILE_WIDTH = 480
+_WIDEST_TILE, _NARROWEST_TILE = 480, 240
 _LABEL = {"fontFace": cv2.FONT_HERSHEY_SIMPLEX, "fontScale": 0.5, "color": (255, 255, 255)}
 
 
@@ -44,14 +44,16 @@ class Tile:
 def overlay_picture(tiles: Sequence[Tile], title: str) -> np.ndarray:
     """(H, W, 3) uint8 BGR picture of all views side by side, ``title`` on top; of even sizes."""
     columns = math.ceil(math.sqrt(len(tiles)))
-    pictures = [_scaled_and_labelled(tile) for tile in tiles]
-    height, width = max(picture.shape[0] for picture in pictures), columns * _TILE_WIDTH
+    widest = max(tile.footage.shape[1] for tile in tiles)
+    tile_width = min(max(widest, _NARROWEST_TILE), _WIDEST_TILE)
+    pictures = [_scaled_and_labelled(tile, tile_width) for tile in tiles]
+    height, width = max(picture.shape[0] for picture in pictures), columns * tile_width
     whole = _STRIP_HEIGHT + math.ceil(len(tiles) / columns) * height
     canvas = np.zeros((whole + whole % 2, width + width % 2, 3), np.uint8)
     canvas[:_STRIP_HEIGHT, :width] = _titled_strip(title, width)
     for index, picture in enumerate(pictures):
-        top, left = _STRIP_HEIGHT + index // columns * height, index % columns * _TILE_WIDTH
-        canvas[top : top + picture.shape[0], left : left + _TILE_WIDTH] = picture
+        top, left = _STRIP_HEIGHT + index // columns * height, index % columns * tile_width
+        canvas[top : top + picture.shape[0], left : left + tile_width] = picture
     return canvas
 
 
@@ -90,12 +92,11 @@ def _written(picture: np.ndarray, text: str, x: int) -> int:
     return cv2.getTextSize(text, _LABEL["fontFace"], _LABEL["fontScale"], 1)[0][0]
 
 
-def _scaled_and_labelled(tile: Tile) -> np.ndarray:
+def _scaled_and_labelled(tile: Tile, width: int) -> np.ndarray:
     picture = coloured(tile)
-    height = round(picture.shape[0] * _TILE_WIDTH / picture.shape[1])
-    shrinks = picture.shape[1] > _TILE_WIDTH
-    method = cv2.INTER_AREA if shrinks else cv2.INTER_NEAREST
-    picture = cv2.resize(picture, (_TILE_WIDTH, height), interpolation=method)
+    height = round(picture.shape[0] * width / picture.shape[1])
+    method = cv2.INTER_AREA if picture.shape[1] > width else cv2.INTER_NEAREST
+    picture = cv2.resize(picture, (width, height), interpolation=method)
     _written(picture, tile.label, 8)
     picture[0], picture[:, 0] = _LINE, _LINE
     return picture

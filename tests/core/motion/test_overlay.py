@@ -26,3 +26,8 @@ def test_views_of_all_sizes_are_put_side_by_side():
     picture = overlay_picture([tile(), tile((30, 41)), tile((700, 333))], "frame 7")
     assert picture.dtype == np.uint8 and picture.shape[0] % 2 == picture.shape[1] % 2 == 0
     assert picture.shape[1] == 2 * 480
+
+
+def test_small_pictures_are_not_blown_up():
+    assert overlay_picture([tile((320, 240))] * 4, "frame 7").shape[1] == 2 * 320
+    assert overlay_picture([tile((40, 30))] * 4, "frame 7").shape[1] == 2 * 240
