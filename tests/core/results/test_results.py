@@ -8,6 +8,7 @@ from contextlib import contextmanager
 import numpy as np
 import pytest
 from silhouette_mocap.core import pipeline
+from silhouette_mocap.core.footage.pictures import write_picture
 from silhouette_mocap.core.motion.motion import read_motion
 from silhouette_mocap.core.pipeline import FitRequest, fit
 from silhouette_mocap.core.progress import Silence
@@ -164,3 +165,17 @@ def test_what_an_earlier_fit_left_is_named(take_file, tmp_path, monkeypatch):
     assert notes.told == ["from an earlier fit, unless written again now: small.fbx, small.trc"]
     notes = unfinished(take_file, tmp_path, 2, monkeypatch)
     assert notes.told[-1].endswith("now: overlay.mp4, small.fbx, small.trc")
+
+
+def test_what_is_wrong_with_a_camera_is_told_once_and_reported(take_file, tmp_path):
+    for frame in (2, 3):
+        path = take_file.parent / "masks" / "cam_02" / f"{frame:06d}.png"
+        write_picture(path, np.zeros((120, 160), np.uint8))
+    notes = Notes()
+    result = fit(read_take(take_file), FitRequest(tmp_path), notes)
+    (finding,) = result.report["camera_findings"]
+    assert (finding["camera"], finding["kind"], finding["frames"]) == ("cam_02", "dead", [2, 3])
+    assert "cam_02 is dead in frames 2 to 3" in finding["text"]
+    assert notes.told.count(finding["text"]) == 1 and finding["text"] in result.report["notes"]
+    page = (tmp_path / "report.html").read_text("utf-8")
+    assert finding["text"] in page.split('id="cameras"')[1].split("<table")[0]
