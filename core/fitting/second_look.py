@@ -130,24 +130,27 @@ def _joined(
         return
     indices = range(min(differing), max(differing) + 1)
     candidates = [_candidates(body, fits[i].pose, back[i]) for i in indices]
-    seen = [silhouettes for _, silhouettes in read([fits[i].frame for i in indices])]
     costs = [
         _costs(tracker, poses, silhouettes, fits[i].scores.view_weights)
-        for i, poses, silhouettes in zip(indices, candidates, seen, strict=True)
+        for i, poses, (_, silhouettes) in zip(
+            indices, candidates, read([fits[i].frame for i in indices]), strict=True
+        )
     ]
     ends = [fits[i].pose for i in (indices[0] - 1, indices[-1] + 1) if 0 <= i < len(fits)]
     path = _path(body, candidates, costs, ends if indices[0] else [None, *ends], course.fps)
-    for index, k, poses, cost, silhouettes in zip(
-        indices, path, candidates, costs, seen, strict=True
-    ):
-        ambiguous = abs(cost[0] - cost[1]) < 1.0 and _apart(body, poses[0], poses[1]) > APART_M
+    chosen: dict[int, tuple[np.ndarray, np.ndarray | None]] = {}
+    for index, k, poses, cost in zip(indices, path, candidates, costs, strict=True):
+        apart = np.linalg.norm(np.diff(points(body, poses[:2]), axis=0)[0], axis=1)
+        ambiguous = abs(cost[0] - cost[1]) < 1.0 and apart.max() > APART_M
         if k or ambiguous:
-            scores = frame_scores(tracker.evaluator, poses[k], silhouettes, course.usual)
-            if ambiguous:
-                apart = np.linalg.norm(np.diff(points(body, poses[:2]), axis=0)[0], axis=1)
-                likely = np.where(apart > APART_M, _EITHER, 1.0) * scores.confidence
-                scores = replace(scores, lost=True, confidence=likely)
-            yield index, replace(fits[index], pose=poses[k], scores=scores)
+            chosen[index] = poses[k], apart if ambiguous else None
+    for index, (_, silhouettes) in zip(chosen, read([fits[i].frame for i in chosen]), strict=True):
+        pose, apart = chosen[index]
+        scores = frame_scores(tracker.evaluator, pose, silhouettes, course.usual)
+        if apart is not None:
+            likely = np.where(apart > APART_M, _EITHER, 1.0) * scores.confidence
+            scores = replace(scores, lost=True, confidence=likely)
+        yield index, replace(fits[index], pose=pose, scores=scores)
 
 
 def _passed_back(

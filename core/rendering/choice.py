@@ -27,8 +27,8 @@ class MakeEvaluator(Protocol):
 
 
 def native(body: Body, cameras: tuple[Camera, ...], level: int = 0) -> Evaluator:
-    """The native kernel on all processors."""
-    return NativeEvaluator(body, cameras, level, threads=os.cpu_count() or 1)
+    """The native kernel on all processors but one, which reads ahead and keeps what is found."""
+    return NativeEvaluator(body, cameras, level, threads=max(1, (os.cpu_count() or 1) - 1))
 
 
 def opengl(body: Body, cameras: tuple[Camera, ...], level: int = 0) -> Evaluator:

@@ -5,6 +5,7 @@ these leave in doubt, and at what leads to a locked pose.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -22,6 +23,14 @@ from .writing import Outcome
 
 Silhouettes = tuple[Silhouette, ...]
 """One frame's, camera by camera."""
+
+
+class _Seen(NamedTuple):
+    """One frame's stamps (V, 2), silhouettes and pictures."""
+
+    stamps: np.ndarray
+    silhouettes: Silhouettes
+    pictures: tuple[np.ndarray, ...]
 
 
 def tracked(outcome: Outcome, search: Search, progress: Progress) -> tuple[CameraFinding, ...]:
@@ -51,7 +60,7 @@ class _Passes:
         self.locks = read_locks(outcome.take.locks, start.body, self.views.frames)
         origin = int(start.frames[0])
         self.directions = range(origin, last + 1), range(origin - 1, first - 1, -1)
-        self.seen: dict[int, tuple[np.ndarray, Silhouettes]] = {}
+        self.seen: dict[int, _Seen] = {}
 
     def first(self) -> None:
         """From the initial pose on and back, after the frames that are in the journal."""
@@ -64,7 +73,9 @@ class _Passes:
             for fit in (finished[frame] for frame in frames if frame in finished):
                 history.add(fit.pose, fit.scores.lumps, fit.locked)
             left = [frame for frame in frames if frame not in finished]
-            self._keep(track(self.tracker, history, made_ahead(self._read(left)), self.locks))
+            self._keep(
+                track(self.tracker, history, made_ahead(self._read_and_hold(left)), self.locks)
+            )
 
     def second(self) -> None:
         """What the first passes leave in doubt, once more from the other end."""
@@ -89,14 +100,21 @@ class _Passes:
         return found
 
     def _read(self, frames: Iterable[int]) -> Iterator[tuple[int, Silhouettes]]:
-        """Numbers and silhouettes of ``frames``, their contours found."""
+        """Numbers and silhouettes of ``frames``."""
         for frame in frames:
-            stamps = self.views.stamps(frame)
-            silhouettes = self.views.silhouettes(frame)
-            for silhouette in silhouettes:
+            yield frame, self.views.silhouettes(frame)
+
+    def _read_and_hold(self, frames: Iterable[int]) -> Iterator[tuple[int, Silhouettes]]:
+        """The same, contours found, held until the frame is kept: a video has but one reader."""
+        for frame in frames:
+            seen = self.seen[frame] = self._look(frame)
+            for silhouette in seen.silhouettes:
                 _ = silhouette.contour
-            self.seen[frame] = (stamps, silhouettes)
-            yield frame, silhouettes
+            yield frame, seen.silhouettes
+
+    def _look(self, frame: int) -> _Seen:
+        stamps, silhouettes = self.views.stamps(frame), self.views.silhouettes(frame)
+        return _Seen(stamps, silhouettes, self.views.pictures(frame))
 
     def _keep(self, fits: Iterable[FrameFit], tell: bool = True) -> None:
         """Puts ``fits`` into the journal while the next is found, and tells of those kept."""
@@ -113,15 +131,14 @@ class _Passes:
         self.seen.clear()
 
     def _add(self, fit: FrameFit, rendered: Sequence[np.ndarray], evaluator: str) -> None:
-        stamps, silhouettes = self.seen.pop(fit.frame)
-        tiles = [
-            Tile(f"{view.camera.name}  IoU {iou:.2f}", view.picture(fit.frame), silhouette, drawn)
-            for view, iou, silhouette, drawn in zip(
-                self.views.views, fit.scores.iou, silhouettes, rendered, strict=True
-            )
+        seen = self.seen.pop(fit.frame, None) or self._look(fit.frame)
+        labels = [
+            f"{camera.name}  IoU {iou:.2f}"
+            for camera, iou in zip(self.views.cameras, fit.scores.iou, strict=True)
         ]
-        picture = overlay_picture(tiles, f"frame {fit.frame}")
-        self.journal.add(fit, stamps, picture, evaluator)
+        tiles = map(Tile, labels, seen.pictures, seen.silhouettes, rendered)
+        picture = overlay_picture(tuple(tiles), f"frame {fit.frame}")
+        self.journal.add(fit, seen.stamps, picture, evaluator)
 
     def _figures(self, fit: FrameFit) -> FrameFigures:
         names, scores = [camera.name for camera in self.views.cameras], fit.scores

@@ -98,6 +98,10 @@ class Views:
         """What the cameras see in ``frame``; read side by side, as each has its own footage."""
         return tuple(self._readers.map(lambda view: view.silhouette(frame), self.views))
 
+    def pictures(self, frame: int) -> tuple[np.ndarray, ...]:
+        """V pictures (H, W, 3) uint8 BGR of ``frame`` as the cameras see it, read likewise."""
+        return tuple(self._readers.map(lambda view: view.picture(frame), self.views))
+
     @cached_property
     def _readers(self) -> ThreadPoolExecutor:
         """Threads that stay: new ones for every frame would scatter their memory."""

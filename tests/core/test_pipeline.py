@@ -1,6 +1,9 @@
 """The whole way from a take to its files, on a small one."""
 
 import json
+import threading
+import time
+from collections import defaultdict
 from dataclasses import replace
 
 import cv2
@@ -22,6 +25,7 @@ from silhouette_mocap.core.rendering import detail
 from silhouette_mocap.core.results import passes
 from silhouette_mocap.core.results.exporting import check_formats, export
 from silhouette_mocap.core.take import InitialPose, read_take
+from silhouette_mocap.core.take.views import View
 
 
 class Notebook(Silence):
@@ -130,6 +134,28 @@ def test_frames_before_the_initial_pose_are_tracked_backwards(quick_start, small
     assert progress.frames[:3] == [1, 2, 0]
     np.testing.assert_array_equal(result.motion.frames, [0, 1, 2])
     assert result.report["error_mm"]["absolute"]["max"] < 100
+
+
+def test_no_footage_is_read_by_two_threads_at_once(quick_start, small_take, tmp_path, monkeypatch):
+    busy, faults = defaultdict(threading.Lock), []
+
+    def alone(read):
+        def checked(view, frame):
+            lock = busy[view.camera.name]
+            if not lock.acquire(blocking=False):
+                faults.append((view.camera.name, frame))
+                return read(view, frame)
+            time.sleep(0.002)
+            found = read(view, frame)
+            lock.release()
+            return found
+
+        return checked
+
+    for name in ("silhouette", "picture"):
+        monkeypatch.setattr(View, name, alone(getattr(View, name)))
+    fit(read_take(small_take), FitRequest(tmp_path), Silence())
+    assert busy and not faults
 
 
 def test_the_motion_goes_through_locked_poses(quick_start, small_take, tmp_path):
