@@ -9,7 +9,24 @@ from silhouette_mocap.core.body.kinematics import points
 from silhouette_mocap.core.body.templates import template
 from silhouette_mocap.core.cameras.presets import Ring, ring
 from silhouette_mocap.core.initialisation.first_pose import FirstFit
+from silhouette_mocap.core.progress import Silence
 from silhouette_mocap.core.rendering.native import NativeEvaluator
+
+
+class Notes(Silence):
+    """Progress that remembers what was told, and of which frames."""
+
+    def __init__(self):
+        self.told, self.frames = [], []
+
+    def note(self, text):
+        """Remembers the text."""
+        self.told.append(text)
+
+    def advance(self, frame, figures=None):
+        """Remembers the frame of a fit."""
+        self.frames += [frame] * (figures is not None)
+
 
 FRAMES = 4
 TAKE = """

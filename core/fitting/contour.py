@@ -19,6 +19,7 @@ from ..body.kinematics import clamped
 from ..cameras.camera import Camera
 from ..energy.evaluator import Weights
 from ..energy.weight_maps import drawing_weight_maps, xor_weight_maps
+from ..rendering.arguments import fixed_segments
 from ..silhouettes.silhouette import Silhouette
 from .contour_descent import Descent, DescentSettings
 from .contour_targets import ContourTargets
@@ -147,15 +148,11 @@ class _FrameSearch:
 
     def _aim(self) -> None:
         """Makes the targets of the descents."""
-        spacings_px = self.settings.descent.spacing_m / self.metres
-        contours = [
-            silhouette.contour.thinned(spacing)
-            for silhouette, spacing in zip(self.silhouettes, spacings_px.tolist(), strict=True)
-        ]
-        tracker = self.tracker
-        self.targets = ContourTargets(tracker.body, tracker.cameras, contours, self.metres)
+        spacing_m = self.settings.descent.spacing_m
+        seen = (self.silhouettes, self.metres, spacing_m)
+        self.targets = ContourTargets.of(self.evaluator, *seen)
         self.targets.shares = self.trust
-        self.spacing_px = float(spacings_px.max())
+        self.spacing_px = float((spacing_m / self.metres).max())
 
     def _trust_views(self) -> float:
         """Trusts each view as far as the pose explains it; returns the largest change of trust."""
@@ -225,11 +222,10 @@ class _FrameSearch:
         pose = self.pose.copy()
         for _, part in odd:
             pose[list(part.dofs)] = self.trusted[list(part.dofs)]
-        lumps = Lumps.of(self.evaluator.silhouettes(pose), self.silhouettes, self.metres)
-        areas = lumps.of_limbs(self.evaluator, pose, limb_segments(self.body), self.trust)
+        missing, surplus = self._lumps(pose)
         silhouettes = list(self.silhouettes)
         for limb, part in odd:
-            if areas[0, limb] < _ELSEWHERE * areas[1, limb]:
+            if missing[limb] < _ELSEWHERE * surplus[limb]:
                 where = (part.segments, self.silhouettes, self.metres)
                 for view, picture in enumerate(dropped(self.evaluator, pose, *where)):
                     if picture is not None:
@@ -260,7 +256,7 @@ class _FrameSearch:
         cost = self._limb_cost(part, self.weights)
         starts = np.stack([self.last, self.predicted, self.trusted])
         if doubted and settings.everywhere:
-            others = [s for s in range(len(self.body.segment_names)) if s not in part.segments]
+            others = fixed_segments(self.body, part.segments)
             covered = self.evaluator.silhouettes(self.pose, others)
             reaches_px = (self.settings.drawn_from_m / self.metres).tolist()
             maps = drawing_weight_maps(self.silhouettes, covered, reaches_px)

@@ -14,9 +14,10 @@ import numpy as np
 
 from ..body.body import Body
 from ..cameras.camera import Camera
-from ..energy.evaluator import Outline
+from ..energy.evaluator import Evaluator, Outline
 from ..native.library import PointsRecord, TargetsRecord, check, load
 from ..silhouettes.observed_contour import ObservedContour
+from ..silhouettes.silhouette import Silhouette
 
 _TERMS, _ROWS = 50, 48
 
@@ -83,6 +84,21 @@ class ContourTargets:
         addresses = {name: array.ctypes.data for name, array in self._arrays.items()}
         self._record = TargetsRecord(len(cameras), load().sm_processor(), **addresses)
         self.shares = np.ones(len(cameras))
+
+    @classmethod
+    def of(
+        cls,
+        evaluator: Evaluator,
+        silhouettes: Sequence[Silhouette],
+        metres: np.ndarray,
+        spacing_m: float,
+    ) -> "ContourTargets":
+        """The contours of V silhouettes, their points about ``spacing_m`` apart."""
+        contours = [
+            silhouette.contour.thinned(spacing)
+            for silhouette, spacing in zip(silhouettes, (spacing_m / metres).tolist(), strict=True)
+        ]
+        return cls(evaluator.body, evaluator.cameras, contours, metres)
 
     def terms(
         self, outlines: Sequence[Outline], transforms: np.ndarray, reach_m: float, turn_m: float

@@ -14,6 +14,7 @@ import numpy as np
 
 from ..body.body import Body
 from ..energy.evaluator import Evaluator
+from ..rendering.arguments import fixed_segments
 from ..silhouettes.silhouette import Silhouette
 
 THICK_M = 0.045
@@ -113,7 +114,7 @@ def dropped(
     all of it is gone in all views together. The pictures reach a little beyond the limb. ``metres``
     (V,) are those that a pixel is wide.
     """
-    others = [s for s in range(len(evaluator.body.segment_names)) if s not in segments]
+    others = fixed_segments(evaluator.body, segments)
     limbs = evaluator.silhouettes(pose, segments)
     pictures = zip(limbs, evaluator.silhouettes(pose, others), silhouettes, strict=True)
     counts = np.array([_seen_and_gone(*picture) for picture in pictures])

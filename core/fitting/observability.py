@@ -9,10 +9,12 @@ next to nothing.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
 from ..body.body import Body, DofKind
+from ..body.kinematics import carried_points
 from ..energy.evaluator import Evaluator
 from ..silhouettes.silhouette import Silhouette
 from .contour_targets import ContourTargets
@@ -59,15 +61,10 @@ class Observability:
             metres: (V,) m that a pixel is wide where the performer stands.
         """
         body = evaluator.body
-        spacings_px = _SPACING_M / metres
-        contours = [
-            silhouette.contour.thinned(spacing)
-            for silhouette, spacing in zip(silhouettes, spacings_px.tolist(), strict=True)
-        ]
-        targets = ContourTargets(body, evaluator.cameras, contours, metres)
+        targets = ContourTargets.of(evaluator, silhouettes, metres, _SPACING_M)
         targets.shares = view_weights
-        transforms, twists = Twists(body).at(pose)
-        outlines = evaluator.outline(pose, None, float(spacings_px.max()))
+        transforms, twists = _twists(body).at(pose)
+        outlines = evaluator.outline(pose, None, float((_SPACING_M / metres).max()))
         matrix, _ = targets.terms(outlines, transforms, _REACH_M, _TURN_M).gathered(twists)
         free = np.where(body.dofs.kinds == DofKind.TRANSLATION, _FREE_M, _FREE_RAD)
         priors = 1.0 / np.minimum(free, body.dofs.rest_spread) ** 2
@@ -77,9 +74,13 @@ class Observability:
         return cls(np.sqrt(np.diag(covariance)), np.sqrt(variances))
 
 
+@lru_cache(maxsize=16)
+def _twists(body: Body) -> Twists:
+    return Twists(body)
+
+
 def _point_moves(body: Body, transforms: np.ndarray, twists: np.ndarray) -> np.ndarray:
     """(14, 3, D) change of the points' places, m, with each DOF; of `Twists.at`."""
-    own = transforms[body.point_joints]
-    places = (own[..., :3] @ body.point_offsets[..., None])[..., 0] + own[..., 3]
+    places = carried_points(body, transforms[None])[0]
     carried = twists[body.point_joints]
     return np.moveaxis(carried[..., :3] + np.cross(carried[..., 3:], places[:, None]), 1, 2)

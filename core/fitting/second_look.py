@@ -9,6 +9,7 @@ moves as people can (Viterbi), joined to what was tracked before and after.
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import product
 
 import numpy as np
@@ -89,7 +90,7 @@ class Course:
                 found.append((begin, end))
         return found
 
-    @property
+    @cached_property
     def usual(self) -> np.ndarray:
         """(5,) `FrameScores.lumps` that the frames have usually."""
         return usual_lumps([fit.scores.lumps for fit in self.fits])
@@ -125,7 +126,9 @@ def _joined(
     """Index and fit of the frames of a stretch that change."""
     body = tracker.evaluator.body
     back = _passed_back(tracker, fits, stretch, read)
-    differing = [i for i, pose in back.items() if _apart(body, pose, fits[i].pose) >= AGREED_M]
+    differing = [
+        i for i, pose in back.items() if _apart(body, pose, fits[i].pose).max() >= AGREED_M
+    ]
     if not differing:
         return
     indices = range(min(differing), max(differing) + 1)
@@ -140,7 +143,7 @@ def _joined(
     path = _path(body, candidates, costs, ends if indices[0] else [None, *ends], course.fps)
     chosen: dict[int, tuple[np.ndarray, np.ndarray | None]] = {}
     for index, k, poses, cost in zip(indices, path, candidates, costs, strict=True):
-        apart = np.linalg.norm(np.diff(points(body, poses[:2]), axis=0)[0], axis=1)
+        apart = _apart(body, poses[0], poses[1])
         ambiguous = abs(cost[0] - cost[1]) < 1.0 and apart.max() > APART_M
         if k or ambiguous:
             chosen[index] = poses[k], apart if ambiguous else None
@@ -164,7 +167,7 @@ def _passed_back(
     found, agreeing = {}, 0
     for index, fit in zip(indices, passed, strict=False):
         found[index] = fit.pose
-        apart = _apart(tracker.evaluator.body, fit.pose, fits[index].pose)
+        apart = _apart(tracker.evaluator.body, fit.pose, fits[index].pose).max()
         agreeing = agreeing + 1 if apart < AGREED_M else 0
         if agreeing == _AGREEING:
             break
@@ -216,15 +219,15 @@ def _moves(before: np.ndarray, after: np.ndarray, fps: float) -> np.ndarray:
     return cost / (1.0 + cost / _LEAP)
 
 
-def _apart(body: Body, pose: np.ndarray, other: np.ndarray) -> float:
-    """How far the farthest of the points of two poses (D,) are from each other, m."""
+def _apart(body: Body, pose: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """(14,) how far the points of two poses (D,) are from each other, m."""
     places = points(body, np.stack([pose, other]))
-    return float(np.linalg.norm(places[0] - places[1], axis=1).max())
+    return np.linalg.norm(places[0] - places[1], axis=1)
 
 
 def _candidates(body: Body, pose: np.ndarray, other: np.ndarray) -> np.ndarray:
     """(K, D) both poses, and those with some limbs of the other where only a few differ."""
-    apart = np.linalg.norm(np.diff(points(body, np.stack([pose, other])), axis=0)[0], axis=1)
+    apart = _apart(body, pose, other)
     differing = [
         part
         for part in body.parts

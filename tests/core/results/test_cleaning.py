@@ -12,23 +12,13 @@ from silhouette_mocap.core.errors import MocapError
 from silhouette_mocap.core.motion.cleaning.settings import CleanSettings
 from silhouette_mocap.core.motion.motion import read_motion, write_motion
 from silhouette_mocap.core.pipeline import FitRequest, fit
-from silhouette_mocap.core.progress import SILENCE, Silence
+from silhouette_mocap.core.progress import SILENCE
 from silhouette_mocap.core.results.cleaning import clean_result, read_result, undo_result
 from silhouette_mocap.core.results.exporting import export
 from silhouette_mocap.core.take import read_take
+from small_take import Notes
 
 SETTINGS = CleanSettings(keys_mm=5.0)
-
-
-class Notes(Silence):
-    def __init__(self):
-        self.told, self.frames = [], []
-
-    def note(self, text):
-        self.told.append(text)
-
-    def advance(self, frame, figures=None):
-        self.frames += [frame] * (figures is not None)
 
 
 @pytest.fixture(scope="module")

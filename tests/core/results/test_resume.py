@@ -16,6 +16,7 @@ from silhouette_mocap.core.progress import Silence
 from silhouette_mocap.core.results import passes
 from silhouette_mocap.core.results.journal import SET_ASIDE, UNFINISHED
 from silhouette_mocap.core.take import InitialPose, read_take
+from small_take import Notes
 
 SAME = ("motion.npz", "body.npz", "overlay.mp4")
 FRAMES = 4
@@ -29,17 +30,6 @@ def asked(out, **changes) -> FitRequest:
 
 class Killed(BaseException):
     """Stands for what leaves no time to write results."""
-
-
-class Notes(Silence):
-    def __init__(self):
-        self.told, self.frames = [], []
-
-    def note(self, text):
-        self.told.append(text)
-
-    def advance(self, frame, figures=None):
-        self.frames += [frame] * (figures is not None)
 
 
 @pytest.fixture
