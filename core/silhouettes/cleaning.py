@@ -6,10 +6,13 @@ Sizes are measured against the largest connected foreground, taken as the perfor
 same settings serve every resolution and distance.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import cv2
 import numpy as np
+
+from ..geometry.boxes import box_round
 
 
 @dataclass(frozen=True)
@@ -49,21 +52,39 @@ class Cleaned:
 def cleaned(mask: np.ndarray, cleaning: Cleaning) -> Cleaned:
     """``mask`` (H, W) bool without small specks and holes.
 
-    Specks are joined over corners, holes over edges only, as complements must be.
+    Specks are joined over corners, holes over edges only, as complements must be. Background that
+    goes on beyond the box round all foreground is no hole.
     """
-    labels, areas = _components(mask, connectivity=8)
-    largest = areas.max(initial=0)
+    whole, box = mask.copy(), box_round(mask, margin_px=1)
+    part = whole[box]
+    labels, areas = _components(part, connectivity=8)
+    largest = areas[1:].max(initial=0)
     small = areas < cleaning.speck * largest
-    kept = mask & ~np.concatenate([[False], small])[labels] if small.any() else mask.copy()
-    labels, areas = _components(~kept, connectivity=4)
+    small[0] = False
+    if small.any():
+        part &= ~small[labels]
+    labels, areas = _components(~part, connectivity=4)
     filled = areas < cleaning.hole * largest
+    filled[[0, *_going_on(labels, box, mask.shape)]] = False
     if filled.any():
-        kept |= np.concatenate([[False], filled])[labels]
-    return Cleaned(kept, int(small.sum()), int(filled.sum()))
+        part |= filled[labels]
+    return Cleaned(whole, int(small.sum()), int(filled.sum()))
 
 
 def _components(mask: np.ndarray, connectivity: int) -> tuple[np.ndarray, np.ndarray]:
+    """Labels (H, W), 0 outside the mask, and (n,) px of each."""
     _, labels, stats, _ = cv2.connectedComponentsWithStats(
-        mask.astype(np.uint8), connectivity=connectivity
+        mask.view(np.uint8), connectivity=connectivity
     )
-    return labels, stats[1:, cv2.CC_STAT_AREA]
+    return labels, stats[:, cv2.CC_STAT_AREA]
+
+
+def _going_on(
+    labels: np.ndarray, box: tuple[slice, slice], shape: tuple[int, ...]
+) -> Iterator[int]:
+    """Labels of what goes on beyond a box, whose rim is one label where the picture goes on."""
+    (rows, columns), (height, width) = box, shape
+    if rows.start > 0 or columns.start > 0:
+        yield labels[0, 0]
+    if rows.stop < height or columns.stop < width:
+        yield labels[-1, -1]

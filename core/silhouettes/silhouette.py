@@ -6,6 +6,7 @@ from functools import cached_property
 import cv2
 import numpy as np
 
+from ..geometry.boxes import box_round
 from .observed_contour import ObservedContour
 
 
@@ -30,11 +31,10 @@ class Silhouette:
         """
         inside = self.foreground.view(np.uint8)
         distances = _depths(1 - inside) - 0.5
-        x, y, width, height = cv2.boundingRect(inside)
         # with a rim of one pixel, where the nearest ones outside lie
-        rows, columns = slice(max(y - 1, 0), y + height + 1), slice(max(x - 1, 0), x + width + 1)
-        depths = _depths(inside[rows, columns])
-        np.subtract(0.5, depths, out=distances[rows, columns], where=self.foreground[rows, columns])
+        part = box_round(self.foreground, margin_px=1)
+        depths = _depths(inside[part])
+        np.subtract(0.5, depths, out=distances[part], where=self.foreground[part])
         return distances
 
     @cached_property

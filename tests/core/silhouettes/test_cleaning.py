@@ -1,4 +1,6 @@
+import cv2
 import numpy as np
+from silhouette_mocap.core.geometry.boxes import box_round
 from silhouette_mocap.core.silhouettes.cleaning import Cleaning, cleaned
 
 
@@ -41,3 +43,36 @@ def test_sizes_are_relative_so_that_resolution_does_not_matter():
 def test_empty_and_full_masks_are_left_alone():
     for mask in (np.zeros((9, 9), bool), np.ones((9, 9), bool)):
         assert np.array_equal(cleaned(mask, Cleaning()).mask, mask)
+
+
+def small_patches(mask: np.ndarray, connectivity: int, least_px: float) -> np.ndarray:
+    """Their labels, all over the picture, 0 where there are none."""
+    picture = mask.astype(np.uint8)
+    _, labels, stats, _ = cv2.connectedComponentsWithStats(picture, connectivity=connectivity)
+    small = stats[:, cv2.CC_STAT_AREA] < least_px
+    return np.where(small[labels] & mask, labels, 0)
+
+
+def test_work_round_the_performer_gives_the_same_as_in_the_whole_picture():
+    rng, counts = np.random.default_rng(0), np.zeros(2, int)
+    for _ in range(300):
+        mask = np.zeros((rng.integers(1, 30), rng.integers(1, 30)), bool)
+        # some reach one, two or all of the picture's edges
+        y0, x0 = rng.integers(-4, np.array(mask.shape) - 1).clip(0)
+        y1, x1 = rng.integers([y0, x0], np.array(mask.shape) + 4) + 1
+        part = mask[y0:y1, x0:x1]
+        part |= rng.random(part.shape) < rng.choice([0.0, 0.4, 0.7, 0.97, 1.0])
+        cleaning = Cleaning(*rng.choice([0.0, 0.05, 0.3], 2))
+        areas = cv2.connectedComponentsWithStats(mask.view(np.uint8), connectivity=8)[2][1:, -1]
+        largest = max(areas, default=0)
+        specks = small_patches(mask, 8, cleaning.speck * largest)
+        holes = small_patches(~mask | (specks > 0), 4, cleaning.hole * largest)
+        beyond = np.ones_like(mask)
+        beyond[box_round(mask, margin_px=1)] = False
+        holes[np.isin(holes, holes[beyond])] = 0
+        result = cleaned(mask, cleaning)
+        np.testing.assert_array_equal(result.mask, mask & (specks == 0) | (holes > 0))
+        found = [len(np.unique(labels[labels > 0])) for labels in (specks, holes)]
+        assert [result.specks, result.holes] == found
+        counts += found
+    assert counts.min() > 50
