@@ -11,6 +11,7 @@ from functools import cache
 import cv2
 import numpy as np
 
+from ..geometry.boxes import box_round
 from ..silhouettes.silhouette import Silhouette
 
 BOTH, MODEL_ONLY, OBSERVED_ONLY = (60, 200, 60), (40, 40, 240), (255, 120, 30)
@@ -46,14 +47,14 @@ def overlay_picture(tiles: Sequence[Tile], title: str) -> np.ndarray:
     columns = math.ceil(math.sqrt(len(tiles)))
     widest = max(tile.footage.shape[1] for tile in tiles)
     tile_width = min(max(widest, _NARROWEST_TILE), _WIDEST_TILE)
-    pictures = [_scaled_and_labelled(tile, tile_width) for tile in tiles]
-    height, width = max(picture.shape[0] for picture in pictures), columns * tile_width
+    heights = [round(tile_width * t.footage.shape[0] / t.footage.shape[1]) for t in tiles]
+    height, width = max(heights), columns * tile_width
     whole = _STRIP_HEIGHT + math.ceil(len(tiles) / columns) * height
     canvas = np.zeros((whole + whole % 2, width + width % 2, 3), np.uint8)
     canvas[:_STRIP_HEIGHT, :width] = _titled_strip(title, width)
-    for index, picture in enumerate(pictures):
+    for index, tile in enumerate(tiles):
         top, left = _STRIP_HEIGHT + index // columns * height, index % columns * tile_width
-        canvas[top : top + picture.shape[0], left : left + tile_width] = picture
+        _draw(tile, canvas[top : top + heights[index], left : left + tile_width])
     return canvas
 
 
@@ -61,19 +62,22 @@ def coloured(tile: Tile) -> np.ndarray:
     """(H, W, 3) uint8 BGR footage, grey, with the two silhouettes over it; unobserved px darker."""
     grey = cv2.cvtColor(tile.footage, cv2.COLOR_BGR2GRAY).astype(np.uint8, copy=False)
     grey[~tile.silhouette.observed] //= 3
-    kinds = tile.silhouette.foreground.view(np.uint8) + 2 * tile.rendered.view(np.uint8)
-    return _shades()[kinds, grey]
+    picture = cv2.cvtColor(grey, cv2.COLOR_GRAY2BGR)
+    box = box_round(tile.silhouette.foreground | tile.rendered)
+    shades = 256 * tile.silhouette.foreground[box] + 512 * tile.rendered[box] + grey[box]
+    picture[box] = _shades().take(shades, axis=0)
+    return picture
 
 
 @cache
 def _shades() -> np.ndarray:
-    """(4, 256, 3) uint8 BGR of each grey, by 1 for the performer and 2 for the model."""
+    """(1024, 3) uint8 BGR of each grey, 256 on for the performer and 512 on for the model."""
     greys = np.arange(256)[:, None]
     shades = [
         (1 - opacity) * greys + opacity * np.array(colour)
         for colour, opacity in ((OBSERVED_ONLY, 0.9), (MODEL_ONLY, 0.9), (BOTH, 0.6))
     ]
-    return np.stack([np.repeat(greys, 3, axis=1), *shades]).astype(np.uint8)
+    return np.concatenate([np.repeat(greys, 3, axis=1), *shades]).astype(np.uint8)
 
 
 def _titled_strip(title: str, width: int) -> np.ndarray:
@@ -92,11 +96,10 @@ def _written(picture: np.ndarray, text: str, x: int) -> int:
     return cv2.getTextSize(text, _LABEL["fontFace"], _LABEL["fontScale"], 1)[0][0]
 
 
-def _scaled_and_labelled(tile: Tile, width: int) -> np.ndarray:
-    picture = coloured(tile)
-    height = round(picture.shape[0] * width / picture.shape[1])
+def _draw(tile: Tile, canvas: np.ndarray) -> None:
+    """Fills the canvas (H, W, 3) with the tile, scaled and labelled."""
+    picture, (height, width) = coloured(tile), canvas.shape[:2]
     method = cv2.INTER_AREA if picture.shape[1] > width else cv2.INTER_NEAREST
-    picture = cv2.resize(picture, (width, height), interpolation=method)
-    _written(picture, tile.label, 8)
-    picture[0], picture[:, 0] = _LINE, _LINE
-    return picture
+    canvas[:] = cv2.resize(picture, (width, height), interpolation=method)
+    _written(canvas, tile.label, 8)
+    canvas[0], canvas[:, 0] = _LINE, _LINE
