@@ -14,6 +14,7 @@ import numpy as np
 
 from ..body.body import Body
 from ..energy.evaluator import Evaluator
+from ..geometry.boxes import box_round
 from ..rendering.arguments import fixed_segments
 from ..silhouettes.silhouette import Silhouette
 
@@ -37,14 +38,13 @@ class Lumps:
     """The lumps of one pose in V views.
 
     Attributes:
-        missing: V boolean pictures (H, W), foreground that the model leaves uncovered; None for
-            none.
+        missing: V arrays (n, 2) of px (x, y), foreground that the model leaves uncovered.
         surplus: likewise, background that the model covers.
         metres: (V,) m that a pixel is wide where the performer stands.
     """
 
-    missing: tuple[np.ndarray | None, ...]
-    surplus: tuple[np.ndarray | None, ...]
+    missing: tuple[np.ndarray, ...]
+    surplus: tuple[np.ndarray, ...]
     metres: np.ndarray
 
     @classmethod
@@ -57,13 +57,13 @@ class Lumps:
         """Those between what a model covers, V pictures (H, W), and the silhouettes."""
         missing, surplus = [], []
         for model, silhouette, metre in zip(rendered, silhouettes, metres.tolist(), strict=True):
-            uncovered = silhouette.foreground & ~model & silhouette.observed
-            missing.append(_thick(uncovered, metre))
-            surplus.append(_thick(model & ~silhouette.foreground & silhouette.observed, metre))
+            differing = (silhouette.foreground ^ model) & silhouette.observed
+            missing.append(_thick(differing & silhouette.foreground, metre))
+            surplus.append(_thick(differing & model, metre))
         return cls(tuple(missing), tuple(surplus), metres)
 
     def __bool__(self) -> bool:
-        return any(picture is not None for picture in (*self.missing, *self.surplus))
+        return any(map(len, (*self.missing, *self.surplus)))
 
     def of_limbs(
         self,
@@ -85,18 +85,16 @@ class Lumps:
         places = evaluator.transforms(pose[None])[0, :, :, 3]
         reaches = [first_joint_and_length(evaluator.body, tuple(limb)) for limb in limbs]
         joints, lengths = np.array([r[0] for r in reaches]), np.array([r[1] for r in reaches])
-        for view, picture in enumerate(self.missing):
-            if picture is not None:
-                rows, columns = np.divmod(np.flatnonzero(picture), picture.shape[1])
+        for view, px in enumerate(self.missing):
+            if len(px):
                 roots = evaluator.cameras[view].project(places[joints])
-                apart = np.hypot(columns - roots[:, :1], rows - roots[:, 1:])
+                apart = np.hypot(px[:, 0] - roots[:, :1], px[:, 1] - roots[:, 1:])
                 within = apart < (_REACHED * lengths / self.metres[view])[:, None]
                 areas[0] += shares[view] * within.sum(axis=1)
-        covered = [(v, np.flatnonzero(p)) for v, p in enumerate(self.surplus) if p is not None]
-        for index, segments in enumerate(limbs if covered else ()):
+        for index, segments in enumerate(limbs if any(map(len, self.surplus)) else ()):
             drawn = evaluator.silhouettes(pose, segments)
-            for view, pixels in covered:
-                areas[1, index] += shares[view] * np.count_nonzero(drawn[view].ravel()[pixels])
+            for view, px in enumerate(self.surplus):
+                areas[1, index] += shares[view] * np.count_nonzero(drawn[view][px[:, 1], px[:, 0]])
         return areas
 
 
@@ -155,22 +153,12 @@ def first_joint_and_length(body: Body, segments: tuple[int, ...]) -> tuple[int, 
     return joints[0], max(ends)
 
 
-def _thick(differing: np.ndarray, metre: float) -> np.ndarray | None:
-    """Where more than a seam differs; None where nowhere."""
+def _thick(differing: np.ndarray, metre: float) -> np.ndarray:
+    """(n, 2) px (x, y) where more than a seam differs."""
     side = max(3, round(THICK_M / metre) | 1)
-    x, y, width, height = cv2.boundingRect(differing.view(np.uint8))
-    if min(width, height) < side:
-        return None
-    kernel = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (side, side))
     # with room for what erodes the lumps from outside
-    rows, columns = (
-        slice(max(y - side, 0), y + height + side),
-        slice(max(x - side, 0), x + width + side),
-    )
-    part = rows, columns
-    opened = cv2.morphologyEx(differing[part].view(np.uint8), cv2.MORPH_OPEN, kernel)
-    if not opened.any():
-        return None
-    thick = np.zeros_like(differing)
-    thick[part] = opened
-    return thick
+    rows, columns = box_round(differing, margin_px=side)
+    kernel = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (side, side))
+    opened = cv2.morphologyEx(differing[rows, columns].view(np.uint8), cv2.MORPH_OPEN, kernel)
+    y, x = np.nonzero(opened)
+    return np.stack([x + columns.start, y + rows.start], axis=1)

@@ -11,6 +11,7 @@ from .limbs import LIMB_NAMES, limb_segments
 from .lumps import Lumps
 from .observability import Observability
 from .part_search import metres_per_pixel
+from .sights import BACKGROUND, FOREGROUND, sets_with_limbs, sights_of
 from .view_trust import view_weights
 
 _EXPLAINED_SHARE = 0.6
@@ -62,29 +63,21 @@ def frame_scores(
     no others.
     """
     rendered = evaluator.silhouettes(pose)
-    xor, union = np.array(
-        [_differences(s, model) for s, model in zip(silhouettes, rendered, strict=True)]
-    ).T
+    sights = sights_of(evaluator, pose, rendered, silhouettes)
+    px = np.array([sight.counts() for sight in sights])
+    union = px.sum(axis=(1, 2)) - px[:, BACKGROUND, 0]
+    xor = px[:, BACKGROUND, 1:].sum(axis=1) + px[:, FOREGROUND, 0]
     weights = view_weights(xor, 2 * union - xor)
     with np.errstate(invalid="ignore", divide="ignore"):
         iou = np.where(union > 0, 1.0 - xor / union, np.nan)
-    views = [v for v, silhouette in enumerate(silhouettes) if silhouette.foreground.any()]
-    pairs = {v: contour_pairs(rendered[v], silhouettes[v].observed) for v in views}
-    distances = {
-        v: np.abs(silhouettes[v].distances.ravel()[pairs[v]].sum(axis=0)) / 2 for v in views
-    }
-
-    def distances_of(parts: tuple[np.ndarray, ...]) -> np.ndarray:
-        own = [distances[v][parts[v].ravel()[pairs[v]].any(axis=0)] for v in views]
-        return np.concatenate([np.zeros(0), *own])
-
-    chosen = limb_segments(evaluator.body)
-    limbs = [evaluator.silhouettes(pose, segments) for segments in chosen]
-    residual = np.array([_figure(np.mean, distances_of(parts)) for parts in limbs])
+    explained, most = _explained(px @ sets_with_limbs(), weights)
+    contours = [sight.contour() for sight in sights]
+    distances = np.concatenate([contour[0] for contour in contours], dtype=float)
+    own = sets_with_limbs()[np.concatenate([contour[1] for contour in contours])]
+    residual = np.array([_figure(np.mean, distances[chosen]) for chosen in own.T])
     metres = metres_at(evaluator, pose)
     found = Lumps.of(rendered, silhouettes, metres)
-    lumps = found.of_limbs(evaluator, pose, chosen, weights).sum(axis=0)
-    explained, most = np.array([_explained(parts, silhouettes, weights) for parts in limbs]).T
+    lumps = found.of_limbs(evaluator, pose, limb_segments(evaluator.body), weights).sum(axis=0)
     seen = Observability.of(evaluator, pose, silhouettes, weights, metres)
     trusted = max(float(weights.sum()), 1e-9)
     usual = np.full(len(LIMB_NAMES), np.inf) if usual is None else usual
@@ -93,7 +86,7 @@ def frame_scores(
     return FrameScores(
         xor_px=xor,
         iou=iou,
-        contour_px=_figure(np.median, distances_of(rendered)),
+        contour_px=_figure(np.median, distances),
         limb_residual=residual,
         unexplained=1.0 - explained,
         view_weights=weights,
@@ -111,42 +104,19 @@ def metres_at(evaluator: Evaluator, pose: np.ndarray) -> np.ndarray:
     return np.array([metres_per_pixel((camera,), root) for camera in evaluator.cameras])
 
 
-def _differences(silhouette: Silhouette, model: np.ndarray) -> tuple[int, int]:
-    """Px of the symmetric difference and of the union, where something was observed."""
-    seen, drawn = silhouette.foreground & silhouette.observed, model & silhouette.observed
-    return np.count_nonzero(seen ^ drawn), np.count_nonzero(seen | drawn)
+def _explained(px: np.ndarray, weights: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(5,) shares, by weights (V,), of limbs' px that are foreground, and of views where most are.
 
-
-def contour_pairs(model: np.ndarray, observed: np.ndarray) -> np.ndarray:
-    """(2, n) flat indices of neighbouring pixels between which the model's contour runs.
-
-    One of them lies inside, one outside, both are observed. The picture's edge is no contour.
+    Only views that show some of a limb count; both are 0 where none does. ``px`` (V, 2, 5) are
+    those that each limb covers of background and of foreground.
     """
-    width, found = model.shape[1], []
-    for one, other, step in (np.s_[:, :-1], np.s_[:, 1:], 1), (np.s_[:-1], np.s_[1:], width):
-        crossing = np.zeros(model.shape, bool)
-        crossing[one] = (model[one] != model[other]) & observed[one] & observed[other]
-        found.append(np.flatnonzero(crossing) + np.array([[0], [step]]))
-    return np.concatenate(found, axis=1)
-
-
-def _explained(
-    limb: tuple[np.ndarray, ...], silhouettes: tuple[Silhouette, ...], weights: np.ndarray
-) -> tuple[float, float]:
-    """Shares, by weights (V,), of a limb's px that are foreground, and of views where most are.
-
-    Only views that show some of it count; both are 0 where none does.
-    """
-    found = []
-    for part, silhouette, weight in zip(limb, silhouettes, weights.tolist(), strict=True):
-        drawn = part & silhouette.observed
-        if weight and drawn.any():
-            share = float(silhouette.foreground[drawn].mean())
-            found.append((weight, share, share >= _EXPLAINED_SHARE))
-    if not found:
-        return 0.0, 0.0
-    by_weight, shares, most = np.array(found, float).T
-    return float(by_weight @ shares / by_weight.sum()), float(by_weight @ most / by_weight.sum())
+    drawn = px.sum(axis=1)
+    shares = px[:, FOREGROUND] / np.maximum(drawn, 1)
+    by_weight = weights[:, None] * (drawn > 0)
+    total = by_weight.sum(axis=0)
+    total[total == 0] = 1.0
+    most = shares >= _EXPLAINED_SHARE
+    return (by_weight * shares).sum(axis=0) / total, (by_weight * most).sum(axis=0) / total
 
 
 def _figure(reduction, values: np.ndarray) -> float:

@@ -2,7 +2,8 @@ from dataclasses import replace
 
 import numpy as np
 from silhouette_mocap.core.fitting.limbs import LIMB_NAMES, limb_segments
-from silhouette_mocap.core.fitting.scores import contour_pairs, frame_scores
+from silhouette_mocap.core.fitting.scores import frame_scores
+from silhouette_mocap.core.fitting.sights import contour_pairs
 from silhouette_mocap.core.silhouettes.silhouette import Silhouette
 from synthetic import dof_values, evaluator, filmed, small_body, small_studio
 
