@@ -155,21 +155,24 @@ def within_limits(body: Body, poses: np.ndarray) -> np.ndarray:
     poses = _checked(body, poses)
     low, high = body.dofs.limits.T
     inside = ((poses >= low - TOLERANCE) & (poses <= high + TOLERANCE)).all(axis=1)
-    swings = _swings(body)
-    return inside & (poses @ swings.normals.T - swings.offsets >= -TOLERANCE).all(axis=1)
+    for cone in _swings(body).cones:
+        inside &= cone.depths(poses[:, cone.rows]) >= -TOLERANCE
+    return inside
 
 
 def clamped(body: Body, poses: np.ndarray) -> np.ndarray:
     """Poses (N, D) brought within the limits: each value and each swing to the nearest allowed."""
-    poses = np.clip(_checked(body, poses), *body.dofs.limits.T)
+    low, high = body.dofs.limits.T
+    poses = np.minimum(np.maximum(_checked(body, poses), low), high)
     swings = _swings(body)
-    if swings.cones:
-        depths = poses @ swings.normals.T - swings.offsets
-        lowest = np.minimum.reduceat(depths, swings.starts, axis=1)
-        for index in np.flatnonzero((lowest < 0).any(axis=0)).tolist():
-            cone, outside = swings.cones[index], lowest[:, index] < 0
-            found = cone.nearest_on_outline(poses[outside][:, cone.rows])
-            poses[np.ix_(outside, cone.rows)] = found
+    apart = poses[:, swings.rows] - swings.centres
+    doubted = (np.square(apart).sum(axis=2) > swings.radii**2).any(axis=0)
+    for index in np.flatnonzero(doubted).tolist():
+        cone = swings.cones[index]
+        values = poses[:, cone.rows]
+        outside = np.flatnonzero(cone.depths(values) < 0)
+        if len(outside):
+            poses[outside[:, None], cone.rows] = cone.nearest_on_outline(values[outside])
     return poses
 
 
@@ -181,11 +184,20 @@ def inward_normals(cone: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True, eq=False)
 class _Cone:
-    """A swing's rows, its polygon's corners (K, 2) and edges (K, 2)."""
+    """A swing's rows, its polygon's corners (K, 2), edges (K, 2) and their inward normals (K, 2).
+
+    ``offsets`` (K,) are the edges' signed distances from 0.
+    """
 
     rows: list[int]
     corners: np.ndarray
     edges: np.ndarray
+    normals: np.ndarray
+    offsets: np.ndarray
+
+    def depths(self, swings: np.ndarray) -> np.ndarray:
+        """(N,) signed distances of swings (N, 2) to the nearest edge's line, inside positive."""
+        return (swings @ self.normals.T - self.offsets).min(axis=1)
 
     def nearest_on_outline(self, swings: np.ndarray) -> np.ndarray:
         """(N, 2) points of the polygon's outline nearest to swings (N, 2)."""
@@ -198,29 +210,26 @@ class _Cone:
 
 @dataclass(frozen=True, eq=False)
 class _Swings:
-    """All cones of a body: the signed distances of a pose (D,) to the lines of their edges, inside
-    positive, are ``normals`` (K, D) times the pose less ``offsets`` (K,); each cone's begin at its
-    one of ``starts``.
-    """
+    """All C cones of a body, their rows (C, 2), and circles (C, 2) and (C,) that lie inside."""
 
     cones: tuple[_Cone, ...]
-    normals: np.ndarray
-    offsets: np.ndarray
-    starts: np.ndarray
+    rows: np.ndarray
+    centres: np.ndarray
+    radii: np.ndarray
 
 
 @lru_cache(maxsize=16)
 def _swings(body: Body) -> _Swings:
-    cones, normals, offsets = [], [np.zeros((0, len(body.dofs)))], [np.zeros(0)]
+    cones = []
     for joint, corners in body.cones.items():
-        rows, inward = list(swing_rows(body, joint)), inward_normals(corners)
-        cones.append(_Cone(rows, corners, np.roll(corners, -1, axis=0) - corners))
-        spread = np.zeros((len(corners), len(body.dofs)))
-        spread[:, rows] = inward
-        normals.append(spread)
-        offsets.append((inward * corners).sum(axis=1))
-    starts = np.cumsum([0, *(len(cone.corners) for cone in cones)])[:-1]
-    return _Swings(tuple(cones), np.concatenate(normals), np.concatenate(offsets), starts)
+        inward = inward_normals(corners)
+        edges = np.roll(corners, -1, axis=0) - corners
+        offsets = (inward * corners).sum(axis=1)
+        cones.append(_Cone(list(swing_rows(body, joint)), corners, edges, inward, offsets))
+    rows = np.array([cone.rows for cone in cones], int).reshape(-1, 2)
+    centres = np.array([cone.corners.mean(axis=0) for cone in cones]).reshape(-1, 2)
+    radii = [cone.depths(centre[None])[0] for cone, centre in zip(cones, centres, strict=True)]
+    return _Swings(tuple(cones), rows, centres, np.array(radii))
 
 
 def _checked(body: Body, poses: np.ndarray) -> np.ndarray:
