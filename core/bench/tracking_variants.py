@@ -6,8 +6,9 @@ from functools import partial
 
 from ..body.body import Body
 from ..cameras.camera import Camera
-from ..fitting.contour import ContourSettings, ContourTracker
+from ..fitting.contour import ContourTracker
 from ..fitting.contour_descent import DescentSettings
+from ..fitting.contour_search import ContourSettings
 from ..fitting.limb_search import LimbSettings
 from ..fitting.search import Search
 from ..fitting.tracker import EvaluatorFactory, Past, PoseFit, Tally, Tracker

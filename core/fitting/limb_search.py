@@ -106,7 +106,7 @@ def limbs_elsewhere(
         settings: how hard to look.
     """
     rng, count = np.random.default_rng(0), settings.everywhere // 2
-    poses = np.concatenate([cost.moved(starts), _everywhere(cost, settings.everywhere)])
+    poses = np.concatenate([cost.moved(starts), _everywhere(cost, settings.everywhere, rng)])
     costs = rough(poses)
     for spread in settings.spreads_rad:
         poses, costs = _next_generation(rough, poses, costs, (spread, count), rng)
@@ -129,16 +129,16 @@ def _next_generation(
     return poses[order], costs[order]
 
 
-def _everywhere(cost: LimbCost, count: int) -> np.ndarray:
-    """(count, D) poses spread over the range of the limb's grid, or all its DOFs without one."""
-    # scipy.stats takes a while to load, which no other command should wait for
-    from scipy.stats import qmc
+def _everywhere(cost: LimbCost, count: int, rng: np.random.Generator) -> np.ndarray:
+    """(count, D) poses spread over the range of the limb's grid, or all its DOFs without one.
 
+    A Latin hypercube; scipy.stats has more even ones, and takes longer to load than to use.
+    """
     dofs = list(cost.part.grid or cost.part.dofs)
-    limits = cost.body.dofs.limits[dofs]
+    low, high = cost.body.dofs.limits[dofs].T
     limbs = np.repeat(cost.pose[None], count, axis=0)
-    shares = qmc.Halton(len(dofs), scramble=False).random(count + 1)[1:]
-    limbs[:, dofs] = limits[:, 0] + shares * (limits[:, 1] - limits[:, 0])
+    strata = np.repeat((np.arange(count) + 0.5)[:, None] / count, len(dofs), axis=1)
+    limbs[:, dofs] = low + rng.permuted(strata, axis=0) * (high - low)
     return cost.moved(limbs)
 
 

@@ -31,6 +31,8 @@ _NEAR_M = 0.08
 """Beside a limb that a view has dropped, where it tells nothing either."""
 _REACHED = 1.15
 """Times a limb's length that lumps may be away from its first joint."""
+_UNUSUAL, _MUCH_M2 = 1.5, 0.015
+"""Lumps that leave a pose unexplained: so many times the usual ones, and so much more."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,6 +98,11 @@ class Lumps:
             for view, px in enumerate(self.surplus):
                 areas[1, index] += shares[view] * np.count_nonzero(drawn[view][px[:, 1], px[:, 0]])
         return areas
+
+
+def unexplained(lumps: np.ndarray, usual: np.ndarray) -> bool:
+    """Whether a pose leaves more in ``lumps`` (5,) than is ``usual`` (5,), for any limb."""
+    return bool((lumps > _UNUSUAL * usual + _MUCH_M2).any())
 
 
 def dropped(

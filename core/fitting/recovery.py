@@ -14,6 +14,7 @@ from ..body.kinematics import points
 from ..cameras.camera import Camera
 from ..silhouettes.place import performer_centre, visual_hull
 from ..silhouettes.silhouette import Silhouette
+from .turns import heading_dof
 
 _HALF_M, _STEP_M = 1.2, 0.06
 _HEADINGS = 12
@@ -37,8 +38,7 @@ def restarts(
     upright = body.rest_pose.copy()
     upright[turns] = pose[turns]
     shapes = np.repeat(np.stack([pose, upright]), _HEADINGS, axis=0)
-    heading = turns[np.argmax(np.abs(body.dofs.axes[turns, 2]))]
-    shapes[:, heading] += np.tile(np.arange(_HEADINGS) * 2 * np.pi / _HEADINGS, 2)
+    shapes[:, heading_dof(body)] += np.tile(np.arange(_HEADINGS) * 2 * np.pi / _HEADINGS, 2)
     middles = points(body, shapes).mean(axis=1)
     shapes[:, shifts] += (centre - middles) @ body.dofs.axes[shifts].T
     return shapes

@@ -70,6 +70,7 @@ class Past:
             were none.
         trusted: (D,) the pose expected now, with each limb that was in trouble as it was before.
         patient: (5,) bool, whether a limb may be held there while the silhouettes drop it.
+        amiss: frames in a row before this one that were not explained (`lumps.unexplained`).
     """
 
     last: np.ndarray
@@ -77,6 +78,7 @@ class Past:
     usual: np.ndarray
     trusted: np.ndarray
     patient: np.ndarray
+    amiss: int = 0
 
     @classmethod
     def still(cls, pose: np.ndarray) -> "Past":

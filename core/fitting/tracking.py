@@ -12,6 +12,7 @@ import numpy as np
 from ..body.body import Body
 from ..silhouettes.silhouette import Silhouette
 from .limbs import LIMB_NAMES
+from .lumps import unexplained
 from .scores import FrameScores, frame_scores
 from .tracker import Past, PoseFit, Tally, Tracker
 
@@ -64,7 +65,7 @@ class History:
 
     def __init__(self, body: Body, pose: np.ndarray):
         self._poses, self._trusted = [pose, pose], pose
-        self._troubled = np.zeros(len(LIMB_NAMES), int)
+        self._troubled, self._amiss = np.zeros(len(LIMB_NAMES), int), 0
         self._lumps: deque[np.ndarray] = deque(maxlen=_REMEMBERED)
         self._limbs = {
             LIMB_NAMES.index(part.name): list(part.dofs)
@@ -79,6 +80,7 @@ class History:
         """
         troubled = (lumps > _TROUBLE * self._usual + _TROUBLE_M2) & (not locked)
         self._troubled = np.where(troubled, self._troubled + 1, 0)
+        self._amiss = self._amiss + 1 if unexplained(lumps, self._usual) and not locked else 0
         self._trusted = np.where(self._held, self._trusted, pose)
         self._poses = [pose if locked else self._poses[1], pose]
         self._lumps.append(lumps)
@@ -89,7 +91,8 @@ class History:
         before, last = self._poses
         predicted = last + _DAMPING * (last - before)
         trusted = np.where(self._held, self._trusted, predicted)
-        return Past(last, predicted, self._usual, trusted, self._troubled < _PATIENCE)
+        patient = self._troubled < _PATIENCE
+        return Past(last, predicted, self._usual, trusted, patient, self._amiss)
 
     @property
     def _held(self) -> np.ndarray:

@@ -3,7 +3,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from silhouette_mocap.core.body.kinematics import within_limits
-from silhouette_mocap.core.fitting.contour import ContourSettings, ContourTracker
+from silhouette_mocap.core.fitting.contour import ContourTracker
+from silhouette_mocap.core.fitting.contour_search import ContourSettings
 from silhouette_mocap.core.fitting.limb_search import LimbSettings
 from silhouette_mocap.core.fitting.tracker import Past
 from silhouette_mocap.core.rendering.native import NativeEvaluator

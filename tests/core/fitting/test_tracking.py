@@ -70,6 +70,18 @@ def test_what_lumps_are_usual_is_what_a_third_of_the_frames_remembered_stay_belo
     np.testing.assert_allclose(history.past.usual, 40 + 0.35 * 59)
 
 
+def test_frames_that_are_not_explained_are_counted_until_one_is():
+    body = small_body("sixteen_segment")
+    history = History(body, body.rest_pose)
+    counts = []
+    for lumps in (0.0, 0.01, 0.1, 0.1, 0.0, 0.1):
+        history.add(body.rest_pose, np.array([0.0, lumps, 0.0, 0.0, 0.0]))
+        counts.append(history.past.amiss)
+    history.add(body.rest_pose, np.full(5, 0.1), locked=True)
+    assert counts == [0, 0, 1, 2, 0, 1]
+    assert history.past.amiss == 0
+
+
 def moved_on(history, body, angle, lumps):
     pose = dof_values(body, left_elbow_flexion=angle, right_elbow_flexion=angle)
     history.add(pose, np.array(lumps, float))
