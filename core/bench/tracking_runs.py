@@ -3,13 +3,13 @@
 import time
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from functools import partial
+from itertools import chain
 
 import numpy as np
 
-from ..ahead import made_ahead
-from ..fitting.second_look import Course, looked_again
-from ..fitting.tracker import Tracker
-from ..fitting.tracking import FrameFit, History, track
+from ..fitting.passes import Passes, directions_from
+from ..fitting.tracking import FrameFit
 from ..motion.motion import Motion
 from ..motion.point_track import PointTrack
 from ..motion.recording import recorded
@@ -66,13 +66,17 @@ def tracked(
         make_evaluator: what draws; None for what fits draw with.
     """
     make = with_level_for(start.pose, make_evaluator or native_choice())
-    passes = Passes(recording, start, variant, variant.make(start.body, recording.cameras, make))
-    fits = []
-    for fit in passes.first():
-        fits.append(fit)
+    tracker = variant.make(start.body, recording.cameras, make)
+    directions = directions_from(start.frame, recording.frames)
+    fits: dict[int, FrameFit] = {}
+    passes = Passes(tracker, start.pose, directions, fits, truth_of(recording).fps or 1.0)
+    read = partial(_read, recording)
+    for fit in chain.from_iterable(passes.first(read)):
+        fits[fit.frame] = fit
         advance(fit.frame)
     begin = time.perf_counter()
-    fits = passes.second()
+    for changed in passes.second(read) if variant.second_look else ():
+        fits.update((fit.frame, fit) for fit in changed)
     looking = time.perf_counter() - begin
     names = [camera.name for camera in recording.cameras]
     motion = recorded(fits, start.body, names, recording.fps)
@@ -80,52 +84,20 @@ def tracked(
         motion=motion,
         score=score(truth_of(recording), _points(motion)),
         errors=_errors(recording, motion),
-        seconds=looking + sum(fit.seconds for fit in fits),
-        evaluations=np.array([fit.tally.evaluated for fit in fits]),
+        seconds=looking + sum(fit.seconds for fit in fits.values()),
+        evaluations=np.array([fits[frame].tally.evaluated for frame in sorted(fits)]),
     )
 
 
-class Passes:
-    """The passes over a recording, as `results.passes` has them over a take.
-
-    Args:
-        recording: what is tracked.
-        start: the initial pose.
-        variant: whether there is a second look.
-        tracker: fits each frame.
-    """
-
-    def __init__(self, recording: Recording, start: Beginning, variant: Variant, tracker: Tracker):
-        self._recording, self._variant, self._tracker = recording, variant, tracker
-        self._start, self._courses = start, []
-        after = [frame for frame in recording.frames if frame >= start.frame]
-        before = [frame for frame in reversed(recording.frames) if frame < start.frame]
-        self._directions = [frames for frames in (after, before) if frames]
-
-    def first(self) -> Iterator[FrameFit]:
-        """The fits from the initial pose on, then of what comes before."""
-        for frames in self._directions:
-            fits = []
-            history = History(self._start.body, self._start.pose)
-            for fit in track(self._tracker, history, made_ahead(self._read(frames))):
-                fits.append(fit)
-                yield fit
-            self._courses.append(Course(fits, truth_of(self._recording).fps or 1.0))
-
-    def second(self) -> list[FrameFit]:
-        """All fits, what the first passes left in doubt looked at again."""
-        found = {fit.frame: fit for course in self._courses for fit in course.fits}
-        for course in self._courses if self._variant.second_look else ():
-            for changed in looked_again(self._tracker, course, self._read):
-                found.update((fit.frame, fit) for fit in changed)
-        return [found[frame] for frame in sorted(found)]
-
-    def _read(self, frames: Iterable[int]) -> Iterator[tuple[int, tuple[Silhouette, ...]]]:
-        for frame in frames:
-            silhouettes = self._recording.silhouettes(frame)
-            for silhouette in silhouettes:
-                _ = silhouette.contour
-            yield frame, silhouettes
+def _read(
+    recording: Recording, frames: Iterable[int]
+) -> Iterator[tuple[int, tuple[Silhouette, ...]]]:
+    """Numbers and silhouettes of ``frames``, contours found."""
+    for frame in frames:
+        silhouettes = recording.silhouettes(frame)
+        for silhouette in silhouettes:
+            _ = silhouette.contour
+        yield frame, silhouettes
 
 
 def _points(motion: Motion) -> PointTrack:

@@ -53,16 +53,16 @@ def stage_seconds(
 
     make = with_level_for(start.pose, _timed_evaluators(watch))
     tracker = _timed_tracker(DEFAULT.make(start.body, recording.cameras, make), watch)
-    fits, begin = [], time.process_time()
+    fits, begin = {}, time.process_time()
     for found in track(tracker, History(start.body, start.pose), footage(recording.frames)):
-        fits.append(found)
+        fits[found.frame] = found
         advance(found.frame)
     watch.seconds[SCORES] = time.process_time() - begin - sum(watch.seconds.values())
     watch.timed(AGAIN, _looked_again)(fits, float(take.fps), views, start)
     return {stage: watch.seconds[stage] / len(recording.frames) for stage in STAGES[:-1]}
 
 
-def _looked_again(fits: list[FrameFit], fps: float, views: Views, start: Beginning) -> None:
+def _looked_again(fits: dict[int, FrameFit], fps: float, views: Views, start: Beginning) -> None:
     """The second look, with a tracker that nobody watches."""
     make = with_level_for(start.pose, native_choice())
     tracker = DEFAULT.make(start.body, views.cameras, make)
@@ -70,8 +70,8 @@ def _looked_again(fits: list[FrameFit], fps: float, views: Views, start: Beginni
     def read(frames: Sequence[int]) -> Iterator[tuple[int, tuple[Silhouette, ...]]]:
         return ((frame, views.silhouettes(frame)) for frame in frames)
 
-    for _ in looked_again(tracker, Course(fits, fps), read):
-        pass
+    for changed in looked_again(tracker, Course(fits, list(fits), fps), read):
+        fits.update((fit.frame, fit) for fit in changed)
 
 
 def _timed_tracker(tracker: Any, watch: Stopwatch) -> Tracker:

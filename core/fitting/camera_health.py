@@ -15,7 +15,7 @@ from ..energy.evaluator import Evaluator
 from .camera_stretches import Read, Stretch, Stretches
 from .offset_search import Offset
 from .scores import metres_at
-from .tracking import FrameFit
+from .tracking import Fits
 from .view_comparison import ViewComparison
 
 _MOST_MOMENTS, _FEWEST_MOMENTS, _EVERY = 24, 8, 4
@@ -52,9 +52,7 @@ class CameraFinding:
     perhaps: tuple[str, ...] = ()
 
 
-def camera_findings(
-    evaluator: Evaluator, fits: Sequence[FrameFit], read: Read
-) -> tuple[CameraFinding, ...]:
+def camera_findings(evaluator: Evaluator, fits: Fits, read: Read) -> tuple[CameraFinding, ...]:
     """What is wrong with the cameras of ``fits``; nothing where it is not certain.
 
     Args:
@@ -62,13 +60,13 @@ def camera_findings(
         fits: the tracked frames.
         read: gives the V silhouettes of a frame.
     """
-    fits = sorted(fits, key=lambda fit: fit.frame)
-    telling = _Telling(evaluator.cameras, [fit.frame for fit in fits])
+    frames = sorted(fits)
+    telling = _Telling(evaluator.cameras, frames)
     stretches = Stretches(evaluator, fits, read)
     found = [telling.silent(stretch) for stretch in stretches.silent_ones()]
-    chosen, offsets = _moments(len(fits)), []
+    chosen, offsets = _moments(len(frames)), []
     if chosen:
-        metres = metres_at(evaluator, fits[len(fits) // 2].pose)
+        metres = metres_at(evaluator, fits[frames[len(frames) // 2]].pose)
         comparison = ViewComparison(evaluator, fits, read, chosen, stretches.silent)
         offsets = comparison.offsets(lambda offset: _is_worth_telling(offset, metres))
         found += [telling.offset(offset, chosen) for offset in offsets]

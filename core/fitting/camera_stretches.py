@@ -10,7 +10,7 @@ import numpy as np
 
 from ..energy.evaluator import Evaluator
 from ..silhouettes.silhouette import Silhouette
-from .tracking import FrameFit
+from .tracking import Fits, columns
 
 Read = Callable[[int], tuple[Silhouette, ...]]
 """Gives the V silhouettes of a frame."""
@@ -63,14 +63,16 @@ class Stretches:
 
     Args:
         evaluator: draws the body in V cameras.
-        fits: in the order of their frames.
+        fits: theirs.
         read: gives the silhouettes.
     """
 
-    def __init__(self, evaluator: Evaluator, fits: Sequence[FrameFit], read: Read):
+    def __init__(self, evaluator: Evaluator, fits: Fits, read: Read):
         self._evaluator, self._fits, self._read = evaluator, fits, read
-        self._trust = np.stack([fit.scores.view_weights for fit in fits])
-        self._iou = np.stack([fit.scores.iou for fit in fits])
+        self._frames = sorted(fits)
+        self._trust, self._iou = columns(
+            fits, self._frames, lambda fit: (fit.scores.view_weights, fit.scores.iou)
+        )
         self.silent = np.zeros(self._trust.shape, bool)
         """(T, V) where a view shows nobody or stands still, as far as it is known."""
 
@@ -115,7 +117,7 @@ class Stretches:
         drawn = np.count_nonzero(self._drawn(view, index))
         seen = np.count_nonzero(self._seen(view, index).foreground)
         camera = self._evaluator.cameras[view]
-        root = self._evaluator.transforms(self._fits[index].pose[None])[0, 0, :, 3]
+        root = self._evaluator.transforms(self._pose(index)[None])[0, 0, :, 3]
         metre = float(camera.depths(root)) / camera.matrix[0, 0]
         return drawn * metre**2 > _VISIBLE_M2 and seen < _NOBODY * drawn
 
@@ -131,7 +133,7 @@ class Stretches:
             still = self._seen(view, middle).foreground
             if all(self._shows(view, index, still) for index in (early, late)):
                 first = self._last_with(view, range(early, -1, -1), still)
-                last = self._last_with(view, range(late, len(self._fits)), still)
+                last = self._last_with(view, range(late, len(self._frames)), still)
                 ends = self._drawn(view, first), self._drawn(view, last)
                 if _differing(*ends) > _MOVED:
                     trust = self._mean_trust(view, first, last)
@@ -162,10 +164,13 @@ class Stretches:
         return missing, surplus
 
     def _seen(self, view: int, index: int) -> Silhouette:
-        return self._read(self._fits[index].frame)[view]
+        return self._read(self._frames[index])[view]
 
     def _drawn(self, view: int, index: int) -> np.ndarray:
-        return self._evaluator.silhouettes(self._fits[index].pose)[view]
+        return self._evaluator.silhouettes(self._pose(index))[view]
+
+    def _pose(self, index: int) -> np.ndarray:
+        return self._fits[self._frames[index]].pose
 
     def _mean_trust(self, view: int, first: int, last: int) -> float:
         return float(self._trust[first : last + 1, view].mean())

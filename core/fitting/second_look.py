@@ -21,7 +21,7 @@ from ..silhouettes.silhouette import Silhouette
 from .limbs import points_of
 from .scores import frame_scores
 from .tracker import Tracker
-from .tracking import FrameFit, History, track, usual_lumps
+from .tracking import Fits, FrameFit, History, columns, track, usual_lumps
 
 AGREED_M = 0.03
 """Two poses whose points are all nearer to each other are the same."""
@@ -54,12 +54,18 @@ class Course:
     """Frames in the order they were tracked, all in one direction of time.
 
     Attributes:
-        fits: one per frame.
+        fits: theirs, perhaps among others.
+        frames: numbers of the T frames.
         fps: frames per second.
     """
 
-    fits: Sequence[FrameFit]
+    fits: Fits
+    frames: Sequence[int]
     fps: float
+
+    def fit(self, index: int) -> FrameFit:
+        """The fit of the frame that was tracked as number ``index``."""
+        return self.fits[self.frames[index]]
 
     def stretches(self) -> list[tuple[int, int]]:
         """(begin, end) indices, end exclusive, that are looked at again from ``end`` backwards.
@@ -67,7 +73,7 @@ class Course:
         Each ends before a frame that is locked, or trusted after a doubtful stretch; it begins
         after the locked frame before, if there is one within reach.
         """
-        locked = np.array([fit.locked for fit in self.fits])
+        _, _, locked = self._signs
         ends = {int(end) for end in np.flatnonzero(locked)}
         doubtful = self.doubtful()
         begins: dict[int, int] = {}
@@ -93,53 +99,54 @@ class Course:
     @cached_property
     def usual(self) -> np.ndarray:
         """(5,) `FrameScores.lumps` that the frames have usually."""
-        return usual_lumps([fit.scores.lumps for fit in self.fits])
+        return usual_lumps(self._signs[0])
 
     def doubtful(self) -> np.ndarray:
         """(T,) bool, whether lumps are unusual in the take."""
-        lumps = np.stack([fit.scores.lumps for fit in self.fits])
-        lost = np.array([fit.scores.lost for fit in self.fits])
-        locked = np.array([fit.locked for fit in self.fits])
+        lumps, lost, locked = self._signs
         return ((lumps > _UNUSUAL * self.usual + _LITTLE_M2).any(axis=1) | lost) & ~locked
+
+    @cached_property
+    def _signs(self) -> list[np.ndarray]:
+        """(T, 5) lumps, (T,) lost and (T,) locked, as they are before the second look."""
+        return columns(
+            self.fits,
+            self.frames,
+            lambda fit: (fit.scores.lumps, fit.scores.lost, fit.locked),
+        )
 
 
 def looked_again(tracker: Tracker, course: Course, read: Read) -> Iterator[list[FrameFit]]:
     """The fits that a second look changes, stretch by stretch of the ``course``.
 
-    ``read`` yields the number and silhouettes of frames.
+    ``read`` yields the number and silhouettes of frames. Those of one stretch are to be put among
+    the course's fits before the next are asked for, as stretches may overlap.
     """
-    fits = list(course.fits)
     for stretch in course.stretches():
-        changed = dict(_joined(tracker, fits, stretch, course, read))
-        for index, fit in changed.items():
-            fits[index] = fit
-        yield list(changed.values())
+        yield list(_joined(tracker, course, stretch, read))
 
 
 def _joined(
-    tracker: Tracker,
-    fits: Sequence[FrameFit],
-    stretch: tuple[int, int],
-    course: Course,
-    read: Read,
-) -> Iterator[tuple[int, FrameFit]]:
-    """Index and fit of the frames of a stretch that change."""
+    tracker: Tracker, course: Course, stretch: tuple[int, int], read: Read
+) -> Iterator[FrameFit]:
+    """The fits of the frames of a stretch that change."""
     body = tracker.evaluator.body
-    back = _passed_back(tracker, fits, stretch, read)
+    back = _passed_back(tracker, course, stretch, read)
     differing = [
-        i for i, pose in back.items() if _apart(body, pose, fits[i].pose).max() >= AGREED_M
+        i for i, pose in back.items() if _apart(body, pose, course.fit(i).pose).max() >= AGREED_M
     ]
     if not differing:
         return
     indices = range(min(differing), max(differing) + 1)
-    candidates = [_candidates(body, fits[i].pose, back[i]) for i in indices]
+    candidates = [_candidates(body, course.fit(i).pose, back[i]) for i in indices]
     costs = [
-        _costs(tracker, poses, silhouettes, fits[i].scores.view_weights)
+        _costs(tracker, poses, silhouettes, course.fit(i).scores.view_weights)
         for i, poses, (_, silhouettes) in zip(
-            indices, candidates, read([fits[i].frame for i in indices]), strict=True
+            indices, candidates, read([course.frames[i] for i in indices]), strict=True
         )
     ]
-    ends = [fits[i].pose for i in (indices[0] - 1, indices[-1] + 1) if 0 <= i < len(fits)]
+    outer = (indices[0] - 1, indices[-1] + 1)
+    ends = [course.fit(i).pose for i in outer if 0 <= i < len(course.frames)]
     path = _path(body, candidates, costs, ends if indices[0] else [None, *ends], course.fps)
     chosen: dict[int, tuple[np.ndarray, np.ndarray | None]] = {}
     for index, k, poses, cost in zip(indices, path, candidates, costs, strict=True):
@@ -147,27 +154,27 @@ def _joined(
         ambiguous = abs(cost[0] - cost[1]) < 1.0 and apart.max() > APART_M
         if k or ambiguous:
             chosen[index] = poses[k], apart if ambiguous else None
-    for index, (_, silhouettes) in zip(chosen, read([fits[i].frame for i in chosen]), strict=True):
-        pose, apart = chosen[index]
+    seen = read([course.frames[i] for i in chosen])
+    for (index, (pose, apart)), (_, silhouettes) in zip(chosen.items(), seen, strict=True):
         scores = frame_scores(tracker.evaluator, pose, silhouettes, course.usual)
         if apart is not None:
             likely = np.where(apart > APART_M, _EITHER, 1.0) * scores.confidence
             scores = replace(scores, lost=True, confidence=likely)
-        yield index, replace(fits[index], pose=pose, scores=scores)
+        yield replace(course.fit(index), pose=pose, scores=scores)
 
 
 def _passed_back(
-    tracker: Tracker, fits: Sequence[FrameFit], stretch: tuple[int, int], read: Read
+    tracker: Tracker, course: Course, stretch: tuple[int, int], read: Read
 ) -> dict[int, np.ndarray]:
     """The poses (D,) that a pass from the stretch's end finds, by index, until it agrees."""
     begin, end = stretch
     indices = range(end - 1, begin - 1, -1)
-    history = History(tracker.evaluator.body, fits[end].pose)
-    passed = track(tracker, history, read([fits[i].frame for i in indices]))
+    history = History(tracker.evaluator.body, course.fit(end).pose)
+    passed = track(tracker, history, read([course.frames[i] for i in indices]))
     found, agreeing = {}, 0
     for index, fit in zip(indices, passed, strict=False):
         found[index] = fit.pose
-        apart = _apart(tracker.evaluator.body, fit.pose, fits[index].pose).max()
+        apart = _apart(tracker.evaluator.body, fit.pose, course.fit(index).pose).max()
         agreeing = agreeing + 1 if apart < AGREED_M else 0
         if agreeing == _AGREEING:
             break

@@ -3,7 +3,7 @@
 import logging
 import time
 from collections import deque
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 
@@ -50,7 +50,28 @@ class FrameFit:
     locked: bool = False
 
 
-def usual_lumps(lumps: Sequence[np.ndarray]) -> np.ndarray:
+Fits = Mapping[int, FrameFit]
+"""Tracked frames by number; long takes have them read from a file whenever one is asked for."""
+
+
+def columns(
+    fits: Fits, frames: Sequence[int], values: Callable[[FrameFit], tuple]
+) -> list[np.ndarray]:
+    """(T, …) arrays, one for each of the ``values`` of a fit, over T of the ``fits``, at least one.
+
+    The fits are looked at one after another, so that none is held.
+    """
+    found: list[np.ndarray] = []
+    for row, frame in enumerate(frames):
+        own = values(fits[frame])
+        if not found:
+            found = [np.repeat(np.asarray(value)[None], len(frames), axis=0) for value in own]
+        for column, value in zip(found, own, strict=True):
+            column[row] = value
+    return found
+
+
+def usual_lumps(lumps: Sequence[np.ndarray] | np.ndarray) -> np.ndarray:
     """(5,) what is usual of `FrameScores.lumps`, n of (5,)."""
     return np.quantile(lumps, _USUAL, axis=0)
 

@@ -13,7 +13,7 @@ import numpy as np
 from ..energy.evaluator import Evaluator
 from .camera_stretches import Read
 from .offset_search import Offset, OffsetSearch
-from .tracking import FrameFit
+from .tracking import Fits, columns
 from .view_offsets import OFFSETS, Moment, OffsetEquations
 
 _ROUNDS, _SETTLED = 6, 0.05
@@ -33,7 +33,7 @@ class ViewComparison:
 
     Args:
         evaluator: draws the body.
-        fits: in the order of their frames.
+        fits: theirs.
         read: gives the silhouettes.
         chosen: indices of the moments.
         silent: (T, V) bool, views that say nothing.
@@ -42,18 +42,19 @@ class ViewComparison:
     def __init__(
         self,
         evaluator: Evaluator,
-        fits: Sequence[FrameFit],
+        fits: Fits,
         read: Read,
         chosen: Sequence[int],
         silent: np.ndarray,
     ):
-        self._poses = np.stack([fit.pose for fit in fits])
+        frames = sorted(fits)
+        (self._poses,) = columns(fits, frames, lambda fit: (fit.pose,))
         self._chosen, self._views = chosen, len(evaluator.cameras)
         self._equations = OffsetEquations(evaluator)
         self._fields = [
             [
                 None if quiet else silhouette.contour.field
-                for silhouette, quiet in zip(read(fits[i].frame), silent[i], strict=True)
+                for silhouette, quiet in zip(read(frames[i]), silent[i], strict=True)
             ]
             for i in chosen
         ]

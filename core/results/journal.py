@@ -2,37 +2,34 @@
 
 Frames are added one by one to a file of records of one length, each with a checksum, so that
 whatever ends the program leaves all frames before the last whole. Their overlay pictures lie beside
-it. Memory does not grow with the take, and a later run goes on where this one ended.
+it. They are read again one by one, too: memory does not grow with the take. A later run goes on
+where this one ended.
 """
 
-import errno
 import json
 import os
 import shutil
-import zlib
+from collections import Counter
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from pathlib import Path
-from typing import BinaryIO
 
 import numpy as np
 
-from ..body.body import POINT_NAMES, Body
+from ..body.body import Body
 from ..body.file import read_body, write_body
 from ..errors import MocapError
 from ..files import made_folder, unwritable
-from ..fitting.limbs import LIMB_NAMES
-from ..fitting.scores import FrameScores
-from ..fitting.tracker import Tally
 from ..fitting.tracking import FrameFit
 from ..footage.pictures import write_picture
 from ..geometry.archive import read_archive, write_archive
 from ..motion.overlay import JPEG_QUALITY
 from .fingerprint import Inputs
+from .records import ANEW, Records, packed, record_kind, unpacked
 
 UNFINISHED, SET_ASIDE = "unfinished", "unfinished.old"
 _START, _BODY, _FRAMES, _PICTURES = "start.npz", "body.npz", "frames.bin", "pictures"
-_ANEW = "leave out --resume to fit all frames anew"
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,8 +55,8 @@ class Start:
     notes: tuple[str, ...]
 
 
-class Journal:
-    """The finished frames in ``folder``.
+class Journal(Mapping[int, FrameFit]):
+    """The finished frames in ``folder``, by number.
 
     Args:
         folder: where they are kept.
@@ -68,10 +65,14 @@ class Journal:
 
     def __init__(self, folder: Path, start: Start):
         self.folder, self.start = folder, start
-        self._kind = _record(len(start.pose), len(start.factors))
-        self._file = folder / _FRAMES
-        self._stream = _opened(self._file)
-        self._count = self._whole()
+        kind = record_kind(len(start.pose), len(start.factors))
+        self._records = Records(folder / _FRAMES, kind)
+        self._count, self._places = 0, dict[int, int]()
+        while (record := self._records.find(self._count)) is not None:
+            frame = int(record["frame"])
+            if not _is_whole_jpeg(self.picture(frame)):
+                break
+            self._note(frame)
 
     @classmethod
     def begun(cls, folder: Path, start: Start) -> "Journal":
@@ -103,7 +104,7 @@ class Journal:
         """
         if not (folder / _START).exists():
             return None
-        stored = read_archive(folder / _START, "start of a fit", _ANEW)
+        stored = read_archive(folder / _START, "start of a fit", ANEW)
         try:
             start = Start(
                 inputs=json.loads(str(stored["inputs"])),
@@ -115,16 +116,39 @@ class Journal:
                 notes=tuple(json.loads(str(stored["notes"]))),
             )
         except (KeyError, ValueError) as error:
-            raise MocapError("is no start of a fit", _ANEW, file=folder / _START) from error
+            raise MocapError("is no start of a fit", ANEW, file=folder / _START) from error
         return cls(folder, start)
 
     def __len__(self) -> int:
         """How many frames are finished."""
-        return len(self._records())
+        return len(self._places)
+
+    def __iter__(self) -> Iterator[int]:
+        """Their numbers in the order they were first added."""
+        return iter(self._places)
+
+    def __contains__(self, frame: object) -> bool:
+        """Whether this frame is finished."""
+        return frame in self._places
+
+    def __getitem__(self, frame: int) -> FrameFit:
+        """The fit of ``frame`` that was added last.
+
+        Raises:
+            KeyError: it is not finished.
+            MocapError: it is not there any more, or not as it was written.
+        """
+        return unpacked(self._records.read(self._places[frame]))
 
     def keep_first(self, count: int) -> None:
-        """Forgets what was added after the first ``count`` times."""
-        self._count = min(self._count, count)
+        """Forgets what was added after the first ``count`` times.
+
+        Raises:
+            MocapError: that is not there any more, or not as it was written.
+        """
+        if count < self._count:
+            self._places = {int(self._records.read(n)["frame"]): n for n in range(count)}
+            self._count = count
 
     def add(self, fit: FrameFit, stamps: np.ndarray, picture: np.ndarray, evaluator: str) -> None:
         """One more finished frame, or one anew, which replaces the one before.
@@ -138,32 +162,21 @@ class Journal:
         Raises:
             MocapError: the disk refuses it, or the journal is not there any more.
         """
-        self._check_own()
+        self._records.check_own()
         write_picture(self.picture(fit.frame), picture, JPEG_QUALITY)
-        record, stream = _packed(fit, stamps, evaluator, self._kind), self._stream
-        try:
-            # over what a record cut short has left
-            stream.seek(self._count * self._kind.itemsize)
-            if stream.write(record.tobytes()) < self._kind.itemsize:
-                raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-            stream.truncate()
-            os.fsync(stream.fileno())
-        except OSError as error:
-            raise unwritable(self._file, error) from error
-        self._count += 1
+        record = packed(fit, stamps, evaluator, self._records.kind)
+        # over what a record cut short has left
+        self._records.put(self._count, record)
+        self._note(fit.frame)
 
-    def fits(self) -> list[FrameFit]:
-        """The finished frames in the order they were first added."""
-        return [_unpacked(record) for record in self._records()]
-
-    def evaluators(self) -> list[str]:
-        """The kinds of evaluators that drew them, in that order."""
-        return [name.decode("ascii") for name in self._records()["evaluator"].tolist()]
+    def evaluators(self) -> Counter[str]:
+        """How many of the frames each kind of evaluator drew."""
+        return Counter(record["evaluator"].decode("ascii") for record in self._last())
 
     def stamps(self) -> tuple[np.ndarray, np.ndarray]:
-        """(n,) their numbers and (n, V, 2) the stamps of their files, in that order."""
-        records = self._records()
-        return records["frame"], records["stamps"]
+        """(n,) numbers of the frames and (n, V, 2) the stamps of their files, in their order."""
+        kind, stamps = self._records.kind["stamps"], (record["stamps"] for record in self._last())
+        return np.array(list(self), np.int64), np.fromiter(stamps, kind, len(self))
 
     def picture(self, frame: int) -> Path:
         """The JPEG file of one frame's overlay."""
@@ -178,58 +191,17 @@ class Journal:
 
     def remove(self) -> None:
         """Ends the journal, as its frames have gone into the results."""
-        self._stream.close()
+        self._records.close()
         _remove(self.folder)
 
-    def _records(self) -> np.ndarray:
-        """The last records of all finished frames, in the order of their first ones.
+    def _last(self) -> Iterator[np.void]:
+        """The last record of every frame."""
+        return map(self._records.read, self._places.values())
 
-        Raises:
-            MocapError: they are not there any more, or not as they were written.
-        """
-        self._check_own()
-        records = self._read()[: self._count]
-        if len(records) < self._count or not all(map(_is_sound, records)):
-            raise MocapError("was changed while the fit ran", _ANEW, file=self._file)
-        last = {frame: index for index, frame in enumerate(records["frame"].tolist())}
-        return records[list(last.values())]
-
-    def _read(self) -> np.ndarray:
-        self._stream.seek(0)
-        data = self._stream.read()
-        return np.frombuffer(data, self._kind, len(data) // self._kind.itemsize)
-
-    def _check_own(self) -> None:
-        """Refuses to go on where the file on disk is not the one that was opened."""
-        try:
-            own = os.path.samestat(os.fstat(self._stream.fileno()), self._file.stat())
-        except OSError:
-            own = False
-        if not own:
-            raise MocapError(
-                "was moved or removed while the fit ran", "give each run a folder of its own",
-                file=self.folder,
-            )  # fmt: skip
-
-    def _whole(self) -> int:
-        """How many records at the file's start are whole, with whole pictures."""
-        whole = 0
-        for record in self._read():
-            if not (_is_sound(record) and _is_whole_jpeg(self.picture(int(record["frame"])))):
-                break
-            whole += 1
-        return whole
-
-
-def _opened(file: Path) -> BinaryIO:
-    try:
-        return file.open("r+b" if file.exists() else "w+b", buffering=0)
-    except OSError as error:
-        raise unwritable(file, error) from error
-
-
-def _is_sound(record: np.void) -> bool:
-    return zlib.crc32(record.tobytes()[:-4]) == record["check"]
+    def _note(self, frame: int) -> None:
+        """The next record is of this frame."""
+        self._places[frame] = self._count
+        self._count += 1
 
 
 def _is_whole_jpeg(file: Path) -> bool:
@@ -274,60 +246,3 @@ def _remove(folder: Path) -> None:
             (folder / name).unlink(missing_ok=True)
         shutil.rmtree(folder / _PICTURES, ignore_errors=True)
         folder.rmdir()
-
-
-def _record(dofs: int, views: int) -> np.dtype:
-    return np.dtype(
-        [
-            ("frame", "<i8"),
-            ("pose", "<f8", (dofs,)),
-            ("xor_px", "<i8", (views,)),
-            ("iou", "<f8", (views,)),
-            ("contour_px", "<f8"),
-            ("limb_residual", "<f8", (len(LIMB_NAMES),)),
-            ("unexplained", "<f8", (len(LIMB_NAMES),)),
-            ("view_weights", "<f8", (views,)),
-            ("lumps", "<f8", (len(LIMB_NAMES),)),
-            ("point_spreads", "<f8", (len(POINT_NAMES),)),
-            ("dof_spreads", "<f8", (dofs,)),
-            ("confidence", "<f8", (len(POINT_NAMES),)),
-            ("lost", "?"),
-            ("locked", "?"),
-            ("evaluated", "<i8"),
-            ("outside_windows", "<i8"),
-            ("seconds", "<f8"),
-            ("stamps", "<i8", (views, 2)),
-            ("evaluator", "S16"),
-            ("check", "<u4"),
-        ]
-    )
-
-
-_SCORES = tuple(field.name for field in fields(FrameScores))
-
-
-def _packed(fit: FrameFit, stamps: np.ndarray, evaluator: str, kind: np.dtype) -> np.ndarray:
-    record = np.zeros((), kind)
-    for name in _SCORES:
-        record[name] = getattr(fit.scores, name)
-    for name in ("frame", "pose", "seconds", "locked"):
-        record[name] = getattr(fit, name)
-    record["evaluated"] = fit.tally.evaluated
-    record["outside_windows"] = fit.tally.outside_windows
-    record["stamps"], record["evaluator"] = stamps, evaluator.encode("ascii")
-    record["check"] = zlib.crc32(record.tobytes()[:-4])
-    return record
-
-
-def _unpacked(record: np.void) -> FrameFit:
-    scores = {name: record[name] for name in _SCORES if name not in ("contour_px", "lost")}
-    return FrameFit(
-        frame=int(record["frame"]),
-        pose=record["pose"],
-        scores=FrameScores(
-            **scores, contour_px=float(record["contour_px"]), lost=bool(record["lost"])
-        ),
-        tally=Tally(int(record["evaluated"]), int(record["outside_windows"])),
-        seconds=float(record["seconds"]),
-        locked=bool(record["locked"]),
-    )

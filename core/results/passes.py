@@ -1,19 +1,15 @@
-"""The passes of a fit over its frames, each frame kept as soon as it is found.
-
-From the initial pose on, then what comes before it; then a second look, from the other end, at what
-these leave in doubt, and at what leads to a locked pose.
-"""
+"""The passes of a fit over its frames, each frame kept in the journal as soon as it is found."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
-from ..ahead import Behind, made_ahead
+from ..ahead import Behind
 from ..fitting.camera_health import CameraFinding, camera_findings
+from ..fitting.passes import Passes, directions_from
 from ..fitting.search import Search
-from ..fitting.second_look import Course, looked_again
-from ..fitting.tracking import FrameFit, History, track
+from ..fitting.tracking import FrameFit
 from ..motion.locks import read_locks
 from ..motion.overlay import Tile, overlay_picture
 from ..progress import FrameFigures, Progress
@@ -53,49 +49,36 @@ class _Passes:
 
     def __init__(self, outcome: Outcome, search: Search, progress: Progress):
         self.views, self.journal, self.choice = outcome.views, outcome.journal, outcome.choice
-        self.progress, self.fps = progress, float(outcome.take.fps)
+        self.progress = progress
         start, (first, last) = self.journal.start, self.views.frames
         make_evaluator = with_level_for(start.pose, self.choice)
         self.tracker = search.made(start.body, self.views.cameras, make_evaluator)
         self.locks = read_locks(outcome.take.locks, start.body, self.views.frames)
-        origin = int(start.frames[0])
-        self.directions = range(origin, last + 1), range(origin - 1, first - 1, -1)
+        directions = directions_from(int(start.frames[0]), range(first, last + 1))
+        fps = float(outcome.take.fps)
+        self.passes = Passes(self.tracker, start.pose, directions, self.journal, fps)
         self.seen: dict[int, _Seen] = {}
 
     def first(self) -> None:
         """From the initial pose on and back, after the frames that are in the journal."""
-        total = sum(map(len, self.directions))
+        total = sum(map(len, self.passes.directions))
         self.journal.keep_first(total)
-        finished = {fit.frame: fit for fit in self.journal.fits()}
-        self.progress.begin("fit", total - len(finished))
-        for frames in self.directions:
-            history = History(self.journal.start.body, self.journal.start.pose)
-            for fit in (finished[frame] for frame in frames if frame in finished):
-                history.add(fit.pose, fit.scores.lumps, fit.locked)
-            left = [frame for frame in frames if frame not in finished]
-            self._keep(
-                track(self.tracker, history, made_ahead(self._read_and_hold(left)), self.locks)
-            )
+        self.progress.begin("fit", total - len(self.journal))
+        for fits in self.passes.first(self._read_and_hold, self.locks):
+            self._keep(fits)
 
     def second(self) -> None:
         """What the first passes leave in doubt, once more from the other end."""
-        found = {fit.frame: fit for fit in self.journal.fits()}
-        courses = [
-            Course([found[frame] for frame in frames], self.fps)
-            for frames in self.directions
-            if len(frames)
-        ]
-        self.progress.begin("second look", sum(len(course.stretches()) for course in courses))
-        for course in courses:
-            for changed in looked_again(self.tracker, course, self._read):
-                self._keep(changed, tell=False)
-                self.progress.advance(None)
+        stretches = sum(len(course.stretches()) for course in self.passes.courses)
+        self.progress.begin("second look", stretches)
+        for changed in self.passes.second(self._read):
+            self._keep(changed, tell=False)
+            self.progress.advance(None)
 
     def cameras(self) -> tuple[CameraFinding, ...]:
         """What is wrong with the cameras, by all fits."""
         self.progress.begin("cameras", 1)
-        evaluator, fits = self.tracker.evaluator, self.journal.fits()
-        found = camera_findings(evaluator, fits, self.views.silhouettes)
+        found = camera_findings(self.tracker.evaluator, self.journal, self.views.silhouettes)
         self.progress.advance(None)
         return found
 

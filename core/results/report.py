@@ -13,35 +13,43 @@ import scipy
 
 from ..files import whole_file
 from ..fitting.observability import UNOBSERVED
-from ..fitting.tracking import FrameFit
+from ..fitting.tracking import Fits, columns
 from ..motion.motion import Motion
 from ..plain import plain
 
 
-def fit_quality(motion: Motion, fits: Sequence[FrameFit]) -> dict:
+def fit_quality(motion: Motion, fits: Fits) -> dict:
     """IoU, contour distance, lost frames, and seconds and evaluations per frame."""
-    ordered = sorted(fits, key=lambda fit: fit.frame)
+    frames = motion.frames.tolist()
+    contour_px, held, seconds, evaluated, outside = columns(
+        fits,
+        frames,
+        lambda fit: (
+            fit.scores.contour_px,
+            fit.scores.dof_spreads > UNOBSERVED,
+            fit.seconds,
+            fit.tally.evaluated,
+            fit.tally.outside_windows,
+        ),
+    )
     return {
-        "frames": motion.frames.tolist(),
+        "frames": frames,
         "iou": _mean(motion.iou),
         "iou_per_camera": dict(zip(motion.camera_names, _columns(motion.iou), strict=True)),
         "iou_per_frame": [_mean(row) for row in motion.iou],
-        "contour_px": _median([fit.scores.contour_px for fit in ordered]),
+        "contour_px": _median(contour_px),
         "lost_frames": motion.frames[motion.lost].tolist(),
-        "held_dofs": _held(motion, ordered),
-        "seconds_per_frame": [fit.seconds for fit in ordered],
-        "evaluations_per_frame": [fit.tally.evaluated for fit in ordered],
-        "outside_windows_per_frame": [fit.tally.outside_windows for fit in ordered],
+        "held_dofs": _shares(motion.dof_names, held),
+        "seconds_per_frame": seconds.tolist(),
+        "evaluations_per_frame": evaluated.tolist(),
+        "outside_windows_per_frame": outside.tolist(),
     }
 
 
-def _held(motion: Motion, fits: Sequence[FrameFit]) -> dict[str, float]:
-    """Share of the frames in which each DOF is held by priors alone, where there are any."""
-    spreads = np.stack([fit.scores.dof_spreads for fit in fits])
-    shares = (spreads > UNOBSERVED).mean(axis=0).round(3)
-    return {
-        name: float(share) for name, share in zip(motion.dof_names, shares, strict=True) if share
-    }
+def _shares(dof_names: Sequence[str], held: np.ndarray) -> dict[str, float]:
+    """Share of the frames in which each DOF is ``held`` (T, D) by priors alone, if in any."""
+    shares = held.mean(axis=0).round(3)
+    return {name: float(share) for name, share in zip(dof_names, shares, strict=True) if share}
 
 
 def versions() -> dict[str, str]:
@@ -70,9 +78,9 @@ def write_report(path: Path, report: dict) -> dict:
         MocapError: the file cannot be written.
     """
     written = {key: plain(value) for key, value in report.items()}
-    text = json.dumps(written, indent=1, allow_nan=False) + "\n"
-    with whole_file(path) as partial:
-        partial.write_text(text, "utf-8")
+    with whole_file(path) as partial, partial.open("w", encoding="utf-8") as file:
+        json.dump(written, file, indent=1, allow_nan=False)
+        file.write("\n")
     return written
 
 
@@ -81,9 +89,9 @@ def _mean(values: np.ndarray) -> float:
     return float(finite.mean()) if len(finite) else math.nan
 
 
-def _median(values: Sequence[float]) -> float:
-    finite = [value for value in values if math.isfinite(value)]
-    return float(np.median(finite)) if finite else math.nan
+def _median(values: np.ndarray) -> float:
+    finite = values[np.isfinite(values)]
+    return float(np.median(finite)) if len(finite) else math.nan
 
 
 def _columns(values: np.ndarray) -> list[float]:

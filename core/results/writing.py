@@ -2,7 +2,6 @@
 
 import hashlib
 import json
-from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -107,8 +106,8 @@ def write_results(outcome: Outcome, folder: Path, progress: Progress) -> FitResu
         notes.append(note)
         progress.note(note)
 
-    fits = outcome.journal.fits()
-    motion = recorded(fits, start.body, [camera.name for camera in views.cameras], take.fps)
+    names = [camera.name for camera in views.cameras]
+    motion = recorded(outcome.journal, start.body, names, take.fps)
     files = _places(outcome, folder)
     write_motion(files[0], motion)
     write_body(files[1], start.body)
@@ -124,12 +123,12 @@ def write_results(outcome: Outcome, folder: Path, progress: Progress) -> FitResu
             "frames": list(views.frames),
             **outcome.settings,
         },
-        "evaluators": dict(Counter(outcome.journal.evaluators())),
+        "evaluators": dict(outcome.journal.evaluators()),
         "versions": versions(),
         "cameras": _camera_facts(views, motion),
         "camera_findings": [asdict(finding) for finding in outcome.findings],
         "surface": drawn_surface(start.body, views.cameras, start.pose),
-        **fit_quality(motion, fits),
+        **fit_quality(motion, outcome.journal),
         "error_mm": _error(take, motion, tell),
         "notes": notes,
         "digests": _digests(folder),
@@ -212,11 +211,12 @@ def finished_result(folder: Path, inputs: Inputs, views: Views) -> FitResult | N
 
 def _digests(folder: Path) -> dict[str, str]:
     """Of the files that a report belongs to; without one that is missing."""
-    return {
-        name: hashlib.sha256((folder / name).read_bytes()).hexdigest()
-        for name in (MOTION, BODY)
-        if (folder / name).exists()
-    }
+    found = {}
+    for path in (folder / MOTION, folder / BODY):
+        if path.exists():
+            with path.open("rb") as file:
+                found[path.name] = hashlib.file_digest(file, "sha256").hexdigest()
+    return found
 
 
 def _places(outcome: Outcome, folder: Path) -> tuple[Path, ...]:

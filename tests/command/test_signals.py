@@ -31,8 +31,8 @@ import sys, time
 import numpy as np
 from silhouette_mocap.core import pipeline
 from silhouette_mocap.core.cli import main
+from silhouette_mocap.core.fitting import passes
 from silhouette_mocap.core.initialisation.first_pose import FirstFit
-from silhouette_mocap.core.results import passes
 
 def started(body, cameras, silhouettes, request, make_evaluator):
     return FirstFit(body, body.rest_pose, np.ones(len(cameras)), ())

@@ -15,14 +15,13 @@ from silhouette_mocap.core.body.kinematics import points, rest_height
 from silhouette_mocap.core.body.scaling import scaled
 from silhouette_mocap.core.body.templates import template
 from silhouette_mocap.core.errors import MocapError
-from silhouette_mocap.core.fitting import search
+from silhouette_mocap.core.fitting import passes, search
 from silhouette_mocap.core.fitting.search import Search
 from silhouette_mocap.core.motion.locks import write_locks
 from silhouette_mocap.core.motion.motion import read_motion
 from silhouette_mocap.core.pipeline import FitRequest, fit, initial_frames
 from silhouette_mocap.core.progress import Silence
 from silhouette_mocap.core.rendering import detail
-from silhouette_mocap.core.results import passes
 from silhouette_mocap.core.results.exporting import check_formats, export
 from silhouette_mocap.core.take import InitialPose, read_take
 from silhouette_mocap.core.take.views import View

@@ -44,11 +44,11 @@ def found_in(scene, seen, cameras=None, pulled_m=0.0):
     """Findings where ``seen`` is what cameras show that are thought to be ``cameras``."""
     body, true_cameras, poses, _ = scene
     draws = evaluator(body, cameras or true_cameras)
-    fits = []
+    fits = {}
     for frame, pose in enumerate(poses):
         pose = pose + dof_values(body, root_x=pulled_m) - body.rest_pose
         scores = frame_scores(draws, pose, seen[frame])
-        fits.append(FrameFit(frame, pose, scores, Tally(), 0.0))
+        fits[frame] = FrameFit(frame, pose, scores, Tally(), 0.0)
     return camera_findings(draws, fits, lambda frame: seen[frame])
 
 

@@ -39,11 +39,15 @@ def fit_of(scene, frame, pose, locked=False):
 
 
 def with_poses(scene, poses):
-    return [fit_of(scene, frame, pose) for frame, pose in enumerate(poses)]
+    return {frame: fit_of(scene, frame, pose) for frame, pose in enumerate(poses)}
+
+
+def course_of(fits):
+    return Course(fits, range(FRAMES), 15.0)
 
 
 def test_what_nobody_doubts_is_not_looked_at_again(scene):
-    course = Course(with_poses(scene, scene[2]), 15.0)
+    course = course_of(with_poses(scene, scene[2]))
     assert not course.doubtful().any()
     assert course.stretches() == []
 
@@ -53,16 +57,16 @@ def test_a_stretch_runs_from_before_the_doubt_to_the_first_calm_frame(scene):
     lumpy = replace(fits[0].scores, lumps=np.full(5, 0.05))
     for frame in (4, 6):
         fits[frame] = replace(fits[frame], scores=lumpy)
-    assert Course(fits, 15.0).stretches() == [(0, 7)]
+    assert course_of(fits).stretches() == [(0, 7)]
     # doubt that lasts to the end has no frame to come back from
     fits[11] = replace(fits[11], scores=lumpy)
-    assert Course(fits, 15.0).stretches() == [(0, 7)]
+    assert course_of(fits).stretches() == [(0, 7)]
 
 
 def test_an_arm_lost_for_a_while_is_found_from_the_other_end(scene):
     body, tracker, truth, seen = scene
     lost = [truth[0] if 5 <= k <= 8 else pose for k, pose in enumerate(truth)]
-    course = Course(with_poses(scene, lost), 15.0)
+    course = course_of(with_poses(scene, lost))
     assert course.doubtful()[6:9].all()
     changed = {
         fit.frame: fit for fits in looked_again(tracker, course, reader(seen)) for fit in fits
@@ -79,7 +83,7 @@ def test_a_locked_pose_leads_back_to_where_both_passes_agree(scene):
     poses = [wrong if 3 <= k <= 8 else pose for k, pose in enumerate(truth)]
     fits = with_poses(scene, poses)
     fits[9] = fit_of(scene, 9, truth[9], locked=True)
-    course = Course(fits, 15.0)
+    course = course_of(fits)
     assert any(end == 9 for _, end in course.stretches())
     changed = {
         fit.frame: fit for fits in looked_again(tracker, course, reader(seen)) for fit in fits
@@ -95,7 +99,7 @@ def test_a_locked_pose_bounds_what_later_locks_change(scene):
     fits = with_poses(scene, scene[2])
     for frame in (4, 9):
         fits[frame] = replace(fits[frame], locked=True)
-    assert Course(fits, 15.0).stretches() == [(0, 4), (5, 9)]
+    assert course_of(fits).stretches() == [(0, 4), (5, 9)]
 
 
 def test_frames_with_locks_have_that_pose_and_the_next_starts_from_it(scene):

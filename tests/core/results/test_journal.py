@@ -59,7 +59,8 @@ def test_what_was_added_comes_back_to_the_last_bit(tmp_path):
     begun(tmp_path / "j", (5, 6, 4))
     journal = Journal.opened(tmp_path / "j")
     assert len(journal) == 3
-    for found, frame in zip(journal.fits(), (5, 6, 4), strict=True):
+    assert list(journal) == [5, 6, 4]
+    for frame, found in journal.items():
         wanted = frame_fit(frame)
         assert (found.frame, found.tally, found.seconds) == (frame, wanted.tally, wanted.seconds)
         np.testing.assert_array_equal(found.pose, wanted.pose)
@@ -67,7 +68,7 @@ def test_what_was_added_comes_back_to_the_last_bit(tmp_path):
             np.testing.assert_array_equal(
                 getattr(found.scores, name), getattr(wanted.scores, name), strict=True
             )
-    assert journal.evaluators() == ["opengl", "native", "native"]
+    assert journal.evaluators() == {"opengl": 1, "native": 2}
     frames, kept = journal.stamps()
     np.testing.assert_array_equal(frames, [5, 6, 4])
     np.testing.assert_array_equal(kept, [stamps(f) for f in (5, 6, 4)])
@@ -90,10 +91,10 @@ def test_a_record_cut_short_is_dropped_and_the_next_takes_its_place(tmp_path, lo
     whole = file.read_bytes()
     file.write_bytes(whole[:-lost] if lost > 0 else whole + b"\0" * 30)
     journal = Journal.opened(tmp_path / "j")
-    kept = [fit.frame for fit in journal.fits()]
+    kept = list(journal)
     assert kept == ([5] if lost > 0 else [5, 6])
     journal.add(frame_fit(9), stamps(9), PICTURE, KINDS[0])
-    assert [fit.frame for fit in Journal.opened(tmp_path / "j").fits()] == [*kept, 9]
+    assert list(Journal.opened(tmp_path / "j")) == [*kept, 9]
 
 
 def test_a_damaged_record_ends_the_journal(tmp_path):
@@ -102,13 +103,13 @@ def test_a_damaged_record_ends_the_journal(tmp_path):
     data = bytearray(file.read_bytes())
     data[len(data) // 2] ^= 1
     file.write_bytes(data)
-    assert [fit.frame for fit in Journal.opened(tmp_path / "j").fits()] == [5]
+    assert list(Journal.opened(tmp_path / "j")) == [5]
 
 
 def test_a_frame_whose_picture_is_cut_short_counts_as_not_finished(tmp_path):
     picture = begun(tmp_path / "j", (5, 6)).picture(6)
     picture.write_bytes(picture.read_bytes()[:-5])
-    assert [fit.frame for fit in Journal.opened(tmp_path / "j").fits()] == [5]
+    assert list(Journal.opened(tmp_path / "j")) == [5]
 
 
 @pytest.mark.parametrize("name", ["frames.bin", ""])
@@ -116,7 +117,10 @@ def test_a_journal_that_goes_while_it_is_used_is_a_fault(tmp_path, name):
     journal = begun(tmp_path / "j", (5, 6))
     (tmp_path / "j" / name).rename(tmp_path / "elsewhere")
     begun(tmp_path / "j", (1,)) if not name else None
-    for use in (journal.fits, lambda: journal.add(frame_fit(7), stamps(7), PICTURE, KINDS[0])):
+    for use in (
+        lambda: journal[5],
+        lambda: journal.add(frame_fit(7), stamps(7), PICTURE, KINDS[0]),
+    ):
         with pytest.raises(MocapError, match=r"j: was moved or removed while the fit ran; give"):
             use()
 
@@ -127,12 +131,12 @@ def test_frames_that_are_changed_behind_its_back_are_a_fault(tmp_path):
         stream.seek(50)
         stream.write(b"other")
     with pytest.raises(MocapError, match="was changed while the fit ran"):
-        journal.fits()
+        dict(journal)
 
 
 def test_a_frame_without_its_picture_counts_as_not_finished(tmp_path):
     begun(tmp_path / "j", (5, 6)).picture(6).unlink()
-    assert [fit.frame for fit in Journal.opened(tmp_path / "j").fits()] == [5]
+    assert list(Journal.opened(tmp_path / "j")) == [5]
 
 
 def test_a_journal_whose_beginning_is_not_whole_is_none(tmp_path):
@@ -157,7 +161,7 @@ def test_a_journal_is_set_aside_over_an_older_one(tmp_path):
         begun(tmp_path / UNFINISHED, frames)
         assert set_aside(tmp_path)
     assert not (tmp_path / UNFINISHED).exists()
-    assert [fit.frame for fit in Journal.opened(tmp_path / SET_ASIDE).fits()] == [2, 3]
+    assert list(Journal.opened(tmp_path / SET_ASIDE)) == [2, 3]
 
 
 def test_a_longer_journal_set_aside_before_stays(tmp_path):

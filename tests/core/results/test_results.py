@@ -8,11 +8,12 @@ from contextlib import contextmanager
 import numpy as np
 import pytest
 from silhouette_mocap.core import pipeline
+from silhouette_mocap.core.fitting import passes
 from silhouette_mocap.core.footage.pictures import write_picture
 from silhouette_mocap.core.motion.motion import read_motion
 from silhouette_mocap.core.pipeline import FitRequest, fit
 from silhouette_mocap.core.progress import Silence
-from silhouette_mocap.core.results import passes, writing
+from silhouette_mocap.core.results import writing
 from silhouette_mocap.core.take import read_take
 
 

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 from silhouette_mocap.core import pipeline
 from silhouette_mocap.core.errors import MocapError
+from silhouette_mocap.core.fitting import passes
 from silhouette_mocap.core.fitting.search import Search
 from silhouette_mocap.core.motion.motion import read_motion, write_motion
 from silhouette_mocap.core.pipeline import FitRequest, fit
 from silhouette_mocap.core.progress import Silence
-from silhouette_mocap.core.results import passes
 from silhouette_mocap.core.results.journal import SET_ASIDE, UNFINISHED
 from silhouette_mocap.core.take import InitialPose, read_take
 from small_take import Notes
