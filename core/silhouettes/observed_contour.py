@@ -5,6 +5,8 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
+from ..geometry.boxes import box_round
+
 BLUR_PX = 0.7
 """Standard deviation that takes the pixels' steps out of the distances."""
 
@@ -33,7 +35,12 @@ class ObservedContour:
         if not foreground.any() or foreground.all():
             return cls(np.full(foreground.shape, np.nan, np.float32), nowhere, nowhere)
         field = cv2.GaussianBlur(distances, (0, 0), BLUR_PX)
-        px, normals = _on_zero(field, _crossings(foreground, observed))
+        # with what slopes beside the contour are made of
+        box = box_round(foreground, margin_px=2)
+        corner = np.array([box[1].start, box[0].start], np.float32)
+        places = _crossings(foreground[box], observed[box])
+        steps, normals = _to_zero(field[box], places)
+        px = places + corner - steps
         if not observed.all():
             field[~observed] = np.nan
         return cls(field, px, normals)
@@ -60,8 +67,8 @@ def _crossings(foreground: np.ndarray, observed: np.ndarray) -> np.ndarray:
     return np.concatenate(found).astype(np.float32)
 
 
-def _on_zero(field: np.ndarray, px: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Points (n, 2) moved on to the zero level of the field along its gradient, and that."""
+def _to_zero(field: np.ndarray, px: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Px (n, 2) from the field's zero level to points (n, 2) along its gradient, and that."""
     if not len(px):
         return px, px
     slopes = cv2.Sobel(field, -1, 1, 0, scale=1 / 8), cv2.Sobel(field, -1, 0, 1, scale=1 / 8)
@@ -72,4 +79,4 @@ def _on_zero(field: np.ndarray, px: np.ndarray) -> tuple[np.ndarray, np.ndarray]
     value, x, y = (v[:, 0] for v in values)
     length = np.maximum(np.hypot(x, y), 1e-6)
     normals = np.stack([x, y], axis=1) / length[:, None]
-    return px - normals * (value / length)[:, None], normals
+    return normals * (value / length)[:, None], normals

@@ -30,7 +30,8 @@ class Silhouette:
         The boundary runs between pixels, so no centre is nearer than half a pixel.
         """
         inside = self.foreground.view(np.uint8)
-        distances = _depths(1 - inside) - 0.5
+        distances = _depths(1 - inside)
+        distances -= 0.5
         # with a rim of one pixel, where the nearest ones outside lie
         part = box_round(self.foreground, margin_px=1)
         depths = _depths(inside[part])
@@ -49,4 +50,6 @@ def _depths(mask: np.ndarray) -> np.ndarray:
     The last bit of OpenCV's roots depends on where in memory they lie; their squares are whole.
     """
     depths = cv2.distanceTransform(mask, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
-    return np.sqrt(np.rint(depths * depths))
+    depths *= depths
+    np.rint(depths, out=depths)
+    return np.sqrt(depths, out=depths)
