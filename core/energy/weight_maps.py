@@ -20,10 +20,10 @@ def xor_weight_maps(silhouettes: Sequence[Silhouette]) -> WeightMaps:
     """
     maps, constants = [], []
     for silhouette in silhouettes:
-        weights = np.where(silhouette.foreground, -1, 1).astype(np.int16)
-        weights[~silhouette.observed] = 0
-        maps.append(weights)
-        constants.append(np.count_nonzero(silhouette.foreground & silhouette.observed))
+        seen = silhouette.foreground & silhouette.observed
+        empty = seen ^ silhouette.observed
+        maps.append((empty.view(np.int8) - seen.view(np.int8)).astype(np.int16))
+        constants.append(np.count_nonzero(seen))
     return WeightMaps(tuple(maps), np.array(constants, np.int64))
 
 

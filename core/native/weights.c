@@ -40,16 +40,29 @@ static void add_up(const place *p, int64_t word, sm_weights *weights, uint64_t *
     }
 }
 
+/* A word of 64 bytes, each 0 or 1: the product's highest byte holds eight of them side by side. */
+static uint64_t word_of(const uint8_t *bytes) {
+    uint64_t word = 0;
+    for (int i = 0; i < 64; i += 8) {
+        uint64_t eight = 0;
+        for (int k = 0; k < 8; k++) eight |= (uint64_t)bytes[i + k] << 8 * k;
+        word |= (eight * 0x0102040810204080ull >> 56) << i;
+    }
+    return word;
+}
+
 /* Signs of a word's columns as two bit planes. */
 static void pack(const place *p, const int16_t *maps, int64_t word, uint64_t *plus, uint64_t *minus) {
     int64_t columns = p->width - 64 * word < 64 ? p->width - 64 * word : 64;
+    uint8_t above[64] = {0}, below[64] = {0};
     for (int64_t y = 0; y < p->height; y++) {
         const int16_t *map = maps + p->pixels + (size_t)(y * p->width + 64 * word);
-        plus[y] = minus[y] = 0;
         for (int64_t x = 0; x < columns; x++) {
-            plus[y] |= (uint64_t)(map[x] > 0) << x;
-            minus[y] |= (uint64_t)(map[x] < 0) << x;
+            above[x] = map[x] > 0;
+            below[x] = map[x] < 0;
         }
+        plus[y] = word_of(above);
+        minus[y] = word_of(below);
     }
 }
 
