@@ -19,7 +19,7 @@ from ..native.library import PointsRecord, TargetsRecord, check, load
 from ..silhouettes.observed_contour import ObservedContour
 from ..silhouettes.silhouette import Silhouette
 
-_TERMS, _ROWS = 50, 48
+_TERMS, _ROWS, _BLOCK = 50, 48, 32
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,10 +71,10 @@ class ContourTargets:
         sizes = np.array([camera.size for camera in cameras], np.int32)
         if [contour.field.shape for contour in contours] != [(h, w) for w, h in sizes.tolist()]:
             raise ValueError("expected one contour of each camera's size")
+        self._fields = [np.ascontiguousarray(contour.field, np.float32) for contour in contours]
         self._arrays = {
             "sizes": sizes,
-            "map_starts": _starts(sizes.astype(np.int64).prod(axis=1)),
-            "fields": np.concatenate([contour.field.ravel() for contour in contours]),
+            "fields": np.array([field.ctypes.data for field in self._fields], np.uintp),
             "starts": _starts(np.array([len(contour.px) for contour in contours])),
             "px": np.concatenate([contour.px for contour in contours]),
             "normals": np.concatenate([contour.normals for contour in contours]),
@@ -117,7 +117,7 @@ class ContourTargets:
         points = PointsRecord(room, **{name: array.ctypes.data for name, array in arrays.items()})
         self._record.reach, self._record.turn = reach_m, turn_m
         transforms = np.ascontiguousarray(transforms, float)
-        out, scratch = np.empty((*self._shape, _TERMS)), np.empty((4, room), np.float32)
+        out, scratch = np.empty((*self._shape, _TERMS)), np.empty((4, room + _BLOCK), np.float32)
         check(
             load().sm_contour_terms(
                 byref(self._record), byref(points), transforms.ctypes.data, self._shape[1],

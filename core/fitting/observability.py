@@ -70,7 +70,7 @@ class Observability:
         priors = 1.0 / np.minimum(free, body.dofs.rest_spread) ** 2
         covariance = np.linalg.inv(matrix / _DEVIATION_M**2 + np.diag(priors))
         moves = _point_moves(body, transforms, twists)
-        variances = np.einsum("pcd,de,pce->p", moves, covariance, moves)
+        variances = (moves @ covariance * moves).sum(axis=(1, 2))
         return cls(np.sqrt(np.diag(covariance)), np.sqrt(variances))
 
 

@@ -23,7 +23,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define SM_ABI 8
+#define SM_ABI 9
 #define SM_CLUSTER 16 /* faces to a cluster */
 #define SM_RUN 8      /* the records of a cluster are filled up to a multiple */
 #define SM_LANES 8     /* views side by side */
@@ -38,6 +38,7 @@
 enum { SM_OK = 0, SM_SIZE = 1, SM_INDEX = 2, SM_SCRATCH = 3, SM_PROCESSOR = 4 };
 enum { SM_TRANSLATION = 0, SM_HINGE = 1, SM_SWING = 2 };
 #define SM_TERMS 50    /* numbers of one set of normal equations */
+#define SM_BLOCK 32    /* points of an outline that are compared at once */
 
 enum { SM_PLANES = 0, SM_MAPS = 1 };
 
@@ -117,8 +118,7 @@ typedef struct {
     int32_t views;
     int32_t processor;          /* code path: what sm_processor() said, or a lower one */
     const int32_t *sizes;       /* (V, 2) width and height */
-    const int64_t *map_starts;  /* (V + 1) first pixel of each view, row by row */
-    const float *fields;        /* (pixels) px from the pixel's centre to the contour, negative inside; not a
+    const float *const *fields; /* (V) of (H, W) px from the pixel's centre to the contour, negative inside; not a
                                    number where nothing was observed */
     const int64_t *starts;      /* (V + 1) first point of each view's contour */
     const float *px, *normals;  /* (points, 2) on the contour, and away from the performer */
@@ -187,7 +187,7 @@ SM_API int32_t sm_outline(const sm_body *, const sm_views *, const double *pose,
  * points, by view and joint: out (V, J, SM_TERMS) holds rows of 8, six of them, of the sums of w l (l, r, 0)', then
  * that of the robust squares and the number of distances r; r in m, and l its change with the twist of
  * the joint. `transforms` (J, 3, 4) are those of the outline, `segment_joints` carry its segments; `scratch`
- * (4, points). */
+ * (4, points + SM_BLOCK). */
 SM_API int32_t sm_contour_terms(const sm_targets *, const sm_points *, const double *transforms, int32_t joints,
                                 const int32_t *segment_joints, double *out, float *scratch);
 

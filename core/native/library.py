@@ -12,7 +12,7 @@ from pathlib import Path
 from ..errors import MocapError
 from .build import TARGETS, fingerprint, host_target, library_name
 
-ABI = 8
+ABI = 9
 PLANES, MAPS = 0, 1
 FOLDER = Path(__file__).resolve().parent
 BUILD = f'build it: python -m pip install ziglang, then python "{FOLDER / "build.py"}"'
@@ -76,7 +76,7 @@ class TargetsRecord(ctypes.Structure):
 
     _fields_ = (
         *((name, c_int32) for name in ("views", "processor")),
-        *((name, c_void_p) for name in ("sizes", "map_starts", "fields", "starts", "px")),
+        *((name, c_void_p) for name in ("sizes", "fields", "starts", "px")),
         *((name, c_void_p) for name in ("normals", "projections", "metres")),
         *((name, c_double) for name in ("reach", "turn")),
     )

@@ -9,7 +9,8 @@
 
 #include <math.h>
 
-enum { ROW = 8, COST = 6 * ROW, COUNT };
+#define FAR 1e18f /* px, beyond any picture; its square is finite */
+enum { ROW = 8, COST = 6 * ROW, COUNT, BLOCK = SM_BLOCK };
 
 /* One view: where its camera and the joints stand, and its part of the sums. */
 typedef struct {
@@ -31,6 +32,8 @@ static void add(const view_terms *v, int32_t joint, const double *point, const d
     row[6] = r *= v->metres;
     double c = v->reach * v->reach, robust = c / (c + r * r), w = share * robust * robust;
     double *restrict out = v->out + SM_TERMS * (size_t)joint;
+    /* not across rows, which would scatter */
+#pragma clang loop vectorize(disable)
     for (int i = 0; i < 6; i++) {
         double weighed = w * row[i];
         for (int j = 0; j < ROW; j++) out[ROW * i + j] += weighed * row[j];
@@ -51,22 +54,21 @@ static int look_up(const float *field, int32_t width, int32_t height, const doub
     return !isnan(*value);
 }
 
-/* Of n points (4, n), the one nearest to a place in px and turned normals; px^2 goes to `apart`. */
-static int64_t nearest(const float *points, int64_t n, int64_t stride, float x, float y, float nx, float ny, float *apart) {
+/* Of n points (4, n), n a multiple of BLOCK, the one nearest to a place in px and turned normals; px^2 goes to
+ * `apart`. */
+static int64_t nearest(const float *points, int64_t n, float x, float y, float nx, float ny, float *apart) {
     int64_t found = -1;
     int32_t least = INT32_MAX; /* floats of at least 0 are ordered as their bits */
-    enum { BLOCK = 64 };
     for (int64_t first = 0; first < n; first += BLOCK) {
-        int64_t count = n - first < BLOCK ? n - first : BLOCK;
-        const float *restrict px = points + first, *restrict py = px + stride, *restrict pnx = py + stride, *restrict pny = pnx + stride;
+        const float *restrict px = points + first, *restrict py = px + n, *restrict pnx = py + n, *restrict pny = pnx + n;
         float distances[BLOCK];
         int32_t bits[BLOCK], best = INT32_MAX;
-        for (int64_t i = 0; i < count; i++) {
+        for (int i = 0; i < BLOCK; i++) {
             float a = px[i] - x, b = py[i] - y, c = pnx[i] - nx, d = pny[i] - ny;
             distances[i] = a * a + b * b + c * c + d * d;
         }
-        memcpy(bits, distances, sizeof(float) * (size_t)count);
-        for (int64_t i = 0; i < count; i++) best = bits[i] < best ? bits[i] : best;
+        memcpy(bits, distances, sizeof bits);
+        for (int i = 0; i < BLOCK; i++) best = bits[i] < best ? bits[i] : best;
         if (best >= least) continue;
         least = best;
         for (found = first; bits[found - first] != best;) found++;
@@ -77,7 +79,7 @@ static int64_t nearest(const float *points, int64_t n, int64_t stride, float x, 
 
 /* From the outline's points to the contour, along the field. */
 static void towards_contour(const sm_targets *t, int32_t view, const sm_points *points, const int32_t *joints, const view_terms *v) {
-    const float *field = t->fields + t->map_starts[view];
+    const float *field = t->fields[view];
     int32_t width = t->sizes[2 * view], height = t->sizes[2 * view + 1];
     for (int64_t i = points->starts[view]; i < points->starts[view + 1]; i++) {
         double value, slope[2];
@@ -91,17 +93,18 @@ static void towards_contour(const sm_targets *t, int32_t view, const sm_points *
 /* From the contour's points to the nearest ones of the outline that look the same way. */
 static void towards_outline(const sm_targets *t, int32_t view, const sm_points *points, const int32_t *joints, const view_terms *v,
                             float *scratch) {
-    int64_t begin = points->starts[view], n = points->starts[view + 1] - begin;
+    int64_t begin = points->starts[view], count = points->starts[view + 1] - begin, n = (count + BLOCK - 1) / BLOCK * BLOCK;
     float turn = (float)(t->turn / v->metres), most = (float)(3.0 * v->reach / v->metres);
-    for (int64_t i = 0; i < n; i++) {
+    for (int64_t i = 0; i < count; i++) {
         const double *px = points->px + 2 * (begin + i), *normal = points->normals + 2 * (begin + i);
         scratch[i] = (float)px[0], scratch[n + i] = (float)px[1];
         scratch[2 * n + i] = turn * (float)normal[0], scratch[3 * n + i] = turn * (float)normal[1];
     }
+    for (int64_t i = count; i < n; i++) scratch[i] = scratch[n + i] = scratch[2 * n + i] = scratch[3 * n + i] = FAR;
     for (int64_t k = t->starts[view]; k < t->starts[view + 1]; k++) {
         const float *at = t->px + 2 * k, *normal = t->normals + 2 * k;
         float apart;
-        int64_t i = nearest(scratch, n, n, at[0], at[1], turn * normal[0], turn * normal[1], &apart);
+        int64_t i = nearest(scratch, n, at[0], at[1], turn * normal[0], turn * normal[1], &apart);
         if (i < 0 || apart > most * most) continue;
         i += begin;
         double g[2] = {normal[0], normal[1]}, *px = points->px + 2 * i;

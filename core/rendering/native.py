@@ -27,7 +27,7 @@ from .arguments import (
 )
 from .model import body_record, views_record
 
-OUTLINE_ROOM = 2000
+OUTLINE_ROOM = 500
 """Points of an outline to begin with, per view."""
 
 
@@ -100,6 +100,7 @@ class NativeEvaluator:
         self._scratches: list[_Pointed] = []
         everything = _Pointed(np.arange(len(body.segment_names), dtype=np.int32))
         self._segments: dict[tuple[int, ...] | None, _Pointed] = {None: everything}
+        self._outline_room = OUTLINE_ROOM * len(self.cameras)
         self._pool = ThreadPoolExecutor(threads) if threads > 1 else None
 
     def prepared(self, maps: WeightMaps) -> NativeWeights:
@@ -193,7 +194,7 @@ class NativeEvaluator:
     ) -> tuple[Outline, ...]:
         """V outlines of what the segments cover, in steps of at most ``spacing_px``."""
         poses, per_view = self._checked(np.asarray(pose)[None])
-        chosen, room = self._chosen(segments), OUTLINE_ROOM * len(self.cameras)
+        chosen, room = self._chosen(segments), self._outline_room
         arguments = poses.ctypes.data, per_view, chosen.address, chosen.length, spacing_px
         while True:
             arrays = {
@@ -208,7 +209,7 @@ class NativeEvaluator:
             starts = arrays.pop("starts")
             if starts[-1] <= room:
                 break
-            room = int(starts[-1])
+            room = self._outline_room = int(starts[-1])
         return tuple(
             Outline(**{name: array[begin:end] for name, array in arrays.items()})
             for begin, end in pairwise(starts.tolist())
