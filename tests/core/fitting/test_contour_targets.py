@@ -122,6 +122,29 @@ def test_what_was_not_observed_draws_no_point_of_the_outline():
     assert targets.terms(outlines, transforms, REACH, TURN).count.sum() <= 1
 
 
+def test_every_point_of_the_contour_draws_the_nearest_of_however_many_points():
+    body, cameras, rng = small_body("performer"), small_studio(1), np.random.default_rng(3)
+    transforms, _ = Twists(body).at(body.rest_pose)
+    metre = 0.03
+    for count in (1, 31, 32, 33, 100):
+        px, at = rng.uniform(0, 30, (count, 2)), rng.uniform(0, 30, (25, 2)).astype(np.float32)
+        angles = rng.uniform(0, 2 * np.pi, count + 25)
+        normals = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+        outline = Outline(np.zeros(count, np.int32), np.zeros((count, 3)), px, normals[:count])
+        away, blind = normals[count:].astype(np.float32), np.full(cameras[0].size[::-1], np.nan)
+        contour = ObservedContour(blind.astype(np.float32), at, away)
+        targets = ContourTargets(body, cameras, [contour], np.array([metre]))
+        terms = targets.terms([outline], transforms, REACH, TURN)
+        turned = TURN / metre * (outline.normals - away[:, None])
+        apart = ((px - at[:, None]) ** 2 + turned**2).sum(axis=2)
+        nearest = apart.argmin(axis=1)
+        near = apart.min(axis=1) < (3 * REACH / metre) ** 2
+        r2 = (((px[nearest] - at) * away).sum(axis=1)[near] * metre) ** 2
+        assert terms.count.sum() == near.sum()
+        cost = (REACH**2 * r2 / (REACH**2 + r2)).sum()
+        np.testing.assert_allclose(terms.cost.sum(), cost, rtol=1e-5, atol=1e-12)
+
+
 def test_contours_of_another_size_are_refused():
     body, cameras = small_body("performer"), small_studio(1)
     nothing = np.zeros((0, 2), np.float32)
