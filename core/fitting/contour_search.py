@@ -55,6 +55,10 @@ class ContourSettings:
     views_weighed: bool = True
 
 
+_RIVAL = 1.05
+"""Times the cost of the best pose that a rival's may be."""
+
+
 class ContourSearch:
     """The search of one frame: its targets, its weights, and the best pose so far.
 
@@ -92,6 +96,7 @@ class ContourSearch:
         ]
         self._limb_dofs = [dof for _, part in self.sought for dof in part.dofs]
         self._tally, self.metres = Tally(), metres_at(self.evaluator, self.last)
+        self._tried: list[tuple[float, np.ndarray]] = []
         self.trust = np.ones(len(silhouettes))
         self.look_at(silhouettes)
         covered = [np.count_nonzero(picture) for picture in self.evaluator.silhouettes(self.last)]
@@ -102,8 +107,10 @@ class ContourSearch:
 
     @property
     def fit(self) -> PoseFit:
-        """The best pose, and what it took."""
-        return PoseFit(self.pose, int(self.apart_px.sum()), self._tally)
+        """The best pose, what it took, and what comes near."""
+        most = _RIVAL * min((cost for cost, _ in self._tried), default=0.0)
+        rivals = tuple(pose for cost, pose in self._tried if cost < most)
+        return PoseFit(self.pose, int(self.apart_px.sum()), self._tally, rivals)
 
     def look_at(self, silhouettes: Sequence[Silhouette]) -> None:
         """Searches for what explains these V from now on."""
@@ -132,7 +139,9 @@ class ContourSearch:
         pixels = self._energies(poses)
         away = (poses - self.trusted)[:, self._limb_dofs] / self.settings.pull_rad
         prior = rest_prior(self.body, poses) + (away**2).sum(axis=1)
-        best = int(np.argmin(np.round(pixels @ self.trust + self._prior_px * prior, 6)))
+        costs = np.round(pixels @ self.trust + self._prior_px * prior, 6)
+        self._tried += zip(costs.tolist(), poses, strict=True)
+        best = int(np.argmin(costs))
         self.pose, self.apart_px = poses[best], pixels[best]
 
     def costs(self, poses: np.ndarray) -> np.ndarray:

@@ -1,16 +1,19 @@
-"""A second look at what one pass leaves in doubt: from the other end, and the better of both.
+"""A second look at what one pass leaves in doubt: other passes, and the best of all of them.
 
 Where lumps remain that are unusual in the take, a limb may have been lost; the pose of a frame
 further on, where nothing speaks against it, leads back through the stretch the other way. So does
-a pose that the user has locked, until both passes agree. Of each frame's candidates (either pass,
-and limbs of one with the rest of the other) a path is chosen that explains the silhouettes and
-moves as people can (Viterbi), joined to what was tracked before and after.
+a pose that the user has locked, until both passes agree. And where the doubt begins, other poses
+may explain the frame as well as the one that was taken: from these rivals the stretch is passed
+through once more. Of each frame's candidates (all passes, and limbs of one with the rest of the
+other) a path is chosen that explains the silhouettes and moves as people can (Viterbi), joined to
+what was tracked before and after.
 """
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 
@@ -45,8 +48,24 @@ _LEAP = 10.0
 """What a leap of any length costs, in the same unit."""
 _MIXED = 2
 """Most limbs in which passes may differ for their poses to be mixed."""
+_RIVALS = 3
+"""Most other poses that a doubtful stretch is passed through from."""
 
 Read = Callable[[Sequence[int]], Iterator[tuple[int, tuple[Silhouette, ...]]]]
+
+
+class Stretch(NamedTuple):
+    """Frames that are looked at again, as indices of a course.
+
+    Attributes:
+        begin: the first.
+        end: the one after the last, which is trusted or locked, or the number of all frames.
+        doubt: the first that is doubtful; None where only a locked pose leads back.
+    """
+
+    begin: int
+    end: int
+    doubt: int | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,34 +86,30 @@ class Course:
         """The fit of the frame that was tracked as number ``index``."""
         return self.fits[self.frames[index]]
 
-    def stretches(self) -> list[tuple[int, int]]:
-        """(begin, end) indices, end exclusive, that are looked at again from ``end`` backwards.
+    def stretches(self) -> list[Stretch]:
+        """What is looked at again, each before a locked frame or about doubtful ones.
 
-        Each ends before a frame that is locked, or trusted after a doubtful stretch; it begins
-        after the locked frame before, if there is one within reach.
+        They begin after the locked frame before, if there is one within reach.
         """
         _, _, locked = self._signs
-        ends = {int(end) for end in np.flatnonzero(locked)}
+        found = {int(end): Stretch(0, int(end)) for end in np.flatnonzero(locked)}
         doubtful = self.doubtful()
-        begins: dict[int, int] = {}
         index = 0
         while index < len(doubtful):
             if not doubtful[index]:
                 index += 1
                 continue
-            begin = index
+            doubt = index
             while index < len(doubtful) and doubtful[index : index + _CALM].any():
                 index += 1
-            if index < len(doubtful):
-                ends.add(index)
-                begins[index] = max(begin - _BACK, 0)
-        found = []
-        for end in sorted(ends):
+            found[index] = Stretch(max(doubt - _BACK, 0), index, doubt)
+        stretches = []
+        for end, stretch in sorted(found.items()):
             before = [int(lock) + 1 for lock in np.flatnonzero(locked[:end])]
-            begin = max([begins.get(end, 0), *before])
+            begin = max([stretch.begin, *before])
             if begin < end:
-                found.append((begin, end))
-        return found
+                stretches.append(stretch._replace(begin=begin))
+        return stretches
 
     @cached_property
     def usual(self) -> np.ndarray:
@@ -126,19 +141,20 @@ def looked_again(tracker: Tracker, course: Course, read: Read) -> Iterator[list[
         yield list(_joined(tracker, course, stretch, read))
 
 
-def _joined(
-    tracker: Tracker, course: Course, stretch: tuple[int, int], read: Read
-) -> Iterator[FrameFit]:
+def _joined(tracker: Tracker, course: Course, stretch: Stretch, read: Read) -> Iterator[FrameFit]:
     """The fits of the frames of a stretch that change."""
     body = tracker.evaluator.body
     back = _passed_back(tracker, course, stretch, read)
-    differing = [
-        i for i, pose in back.items() if _apart(body, pose, course.fit(i).pose).max() >= AGREED_M
-    ]
+    passes = [back, *_passed_by_rivals(tracker, course, stretch, read)]
+    others = {
+        i: [found[i] for found in passes if i in found and _differs(course, body, i, found[i])]
+        for i in range(stretch.begin, stretch.end)
+    }
+    differing = [i for i, poses in others.items() if poses]
     if not differing:
         return
     indices = range(min(differing), max(differing) + 1)
-    candidates = [_candidates(body, course.fit(i).pose, back[i]) for i in indices]
+    candidates = [_candidates(body, course.fit(i).pose, others[i]) for i in indices]
     costs = [
         _costs(tracker, poses, silhouettes, course.fit(i).scores.view_weights)
         for i, poses, (_, silhouettes) in zip(
@@ -150,8 +166,8 @@ def _joined(
     path = _path(body, candidates, costs, ends if indices[0] else [None, *ends], course.fps)
     chosen: dict[int, tuple[np.ndarray, np.ndarray | None]] = {}
     for index, k, poses, cost in zip(indices, path, candidates, costs, strict=True):
-        apart = _apart(body, poses[0], poses[1])
-        ambiguous = abs(cost[0] - cost[1]) < 1.0 and apart.max() > APART_M
+        apart = _apart(body, poses[0], back[index]) if index in back else np.zeros(1)
+        ambiguous = apart.max() > APART_M and abs(cost[0] - cost[1]) < 1.0
         if k or ambiguous:
             chosen[index] = poses[k], apart if ambiguous else None
     seen = read([course.frames[i] for i in chosen])
@@ -163,19 +179,51 @@ def _joined(
         yield replace(course.fit(index), pose=pose, scores=scores)
 
 
+def _differs(course: Course, body: Body, index: int, pose: np.ndarray) -> bool:
+    return bool(_apart(body, course.fit(index).pose, pose).max() >= AGREED_M)
+
+
 def _passed_back(
-    tracker: Tracker, course: Course, stretch: tuple[int, int], read: Read
+    tracker: Tracker, course: Course, stretch: Stretch, read: Read
 ) -> dict[int, np.ndarray]:
-    """The poses (D,) that a pass from the stretch's end finds, by index, until it agrees."""
-    begin, end = stretch
-    indices = range(end - 1, begin - 1, -1)
-    history = History(tracker.evaluator.body, course.fit(end).pose)
+    """The poses (D,) by index of a pass from the stretch's end, if there is a pose to trust."""
+    if stretch.end == len(course.frames):
+        return {}
+    history = History(tracker.evaluator.body, course.fit(stretch.end).pose)
+    return _passed(tracker, course, history, range(stretch.end - 1, stretch.begin - 1, -1), read)
+
+
+def _passed_by_rivals(
+    tracker: Tracker, course: Course, stretch: Stretch, read: Read
+) -> Iterator[dict[int, np.ndarray]]:
+    """The same of passes on from other poses that explain the first doubtful frame as well."""
+    if not stretch.doubt:
+        return
+    body, doubt = tracker.evaluator.body, stretch.doubt
+    history = History(body, course.fit(max(doubt - 2, 0)).pose)
+    history.add(course.fit(doubt - 1).pose, course.usual)
+    ((_, silhouettes),) = read([course.frames[doubt]])
+    fit = tracker.fit(silhouettes, replace(history.past, usual=np.zeros_like(course.usual)))
+    known = [course.fit(doubt).pose]
+    for rival in (fit.pose, *fit.rivals):
+        if len(known) <= _RIVALS and all(_apart(body, rival, k).max() > APART_M for k in known):
+            known.append(rival)
+            history = History(body, rival)
+            history.add(rival, course.usual)
+            found = _passed(tracker, course, history, range(doubt + 1, stretch.end), read)
+            yield {doubt: rival, **found}
+
+
+def _passed(
+    tracker: Tracker, course: Course, history: History, indices: Sequence[int], read: Read
+) -> dict[int, np.ndarray]:
+    """The poses (D,) that a pass over ``indices`` finds, by index, until it agrees."""
     passed = track(tracker, history, read([course.frames[i] for i in indices]))
     found, agreeing = {}, 0
     for index, fit in zip(indices, passed, strict=False):
         found[index] = fit.pose
-        apart = _apart(tracker.evaluator.body, fit.pose, course.fit(index).pose).max()
-        agreeing = agreeing + 1 if apart < AGREED_M else 0
+        differs = _differs(course, tracker.evaluator.body, index, fit.pose)
+        agreeing = 0 if differs else agreeing + 1
         if agreeing == _AGREEING:
             break
     return found
@@ -232,20 +280,21 @@ def _apart(body: Body, pose: np.ndarray, other: np.ndarray) -> np.ndarray:
     return np.linalg.norm(places[0] - places[1], axis=1)
 
 
-def _candidates(body: Body, pose: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """(K, D) both poses, and those with some limbs of the other where only a few differ."""
-    apart = _apart(body, pose, other)
-    differing = [
-        part
-        for part in body.parts
-        if part.role == "limb" and apart[points_of(part.name)].max() >= AGREED_M
-    ]
-    found = [pose, other]
-    if len(differing) <= _MIXED:
-        for swapped in [*product((False, True), repeat=len(differing))][1:-1]:
-            mixed = pose.copy()
-            for part, takes in zip(differing, swapped, strict=True):
-                if takes:
-                    mixed[list(part.dofs)] = other[list(part.dofs)]
-            found.append(mixed)
+def _candidates(body: Body, pose: np.ndarray, others: Sequence[np.ndarray]) -> np.ndarray:
+    """(K, D) all poses, and the first with some limbs of another where only a few differ."""
+    found = [pose, *others]
+    for other in others:
+        apart = _apart(body, pose, other)
+        differing = [
+            part
+            for part in body.parts
+            if part.role == "limb" and apart[points_of(part.name)].max() >= AGREED_M
+        ]
+        if len(differing) <= _MIXED:
+            for swapped in [*product((False, True), repeat=len(differing))][1:-1]:
+                mixed = pose.copy()
+                for part, takes in zip(differing, swapped, strict=True):
+                    if takes:
+                        mixed[list(part.dofs)] = other[list(part.dofs)]
+                found.append(mixed)
     return np.stack(found)

@@ -43,11 +43,13 @@ class PoseFit:
         pose: (D,).
         energy: px that differ, summed over views.
         tally: what the search took.
+        rivals: other poses (D,) that explain nearly as much.
     """
 
     pose: np.ndarray
     energy: int
     tally: Tally
+    rivals: tuple[np.ndarray, ...] = ()
 
 
 def shows_nobody(evaluator: Evaluator, pose: np.ndarray, observed_px: int) -> bool:

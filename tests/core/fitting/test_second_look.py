@@ -57,10 +57,10 @@ def test_a_stretch_runs_from_before_the_doubt_to_the_first_calm_frame(scene):
     lumpy = replace(fits[0].scores, lumps=np.full(5, 0.05))
     for frame in (4, 6):
         fits[frame] = replace(fits[frame], scores=lumpy)
-    assert course_of(fits).stretches() == [(0, 7)]
+    assert course_of(fits).stretches() == [(0, 7, 4)]
     # doubt that lasts to the end has no frame to come back from
     fits[11] = replace(fits[11], scores=lumpy)
-    assert course_of(fits).stretches() == [(0, 7)]
+    assert course_of(fits).stretches() == [(0, 7, 4), (0, FRAMES, 11)]
 
 
 def test_an_arm_lost_for_a_while_is_found_from_the_other_end(scene):
@@ -77,6 +77,18 @@ def test_an_arm_lost_for_a_while_is_found_from_the_other_end(scene):
     assert not set(changed) & {0, 1, 2, 9, 10, 11}
 
 
+def test_an_arm_lost_to_the_end_is_found_by_a_rival_of_the_pose_where_doubt_begins(scene):
+    body, tracker, truth, seen = scene
+    lost = [truth[0] if k >= 5 else pose for k, pose in enumerate(truth)]
+    course = course_of(with_poses(scene, lost))
+    (stretch,) = course.stretches()
+    assert stretch.end == FRAMES
+    changed = changed_by(tracker, course, seen)
+    for frame in range(stretch.doubt, FRAMES):
+        error = point_errors(body, changed[frame].pose, truth[frame])["left_wrist"]
+        assert error < PIXEL_M
+
+
 def test_a_locked_pose_leads_back_to_where_both_passes_agree(scene):
     body, tracker, truth, seen = scene
     wrong = dof_values(body, left_shoulder_abduction=0.6, right_shoulder_abduction=0.9)
@@ -84,7 +96,7 @@ def test_a_locked_pose_leads_back_to_where_both_passes_agree(scene):
     fits = with_poses(scene, poses)
     fits[9] = fit_of(scene, 9, truth[9], locked=True)
     course = course_of(fits)
-    assert any(end == 9 for _, end in course.stretches())
+    assert any(stretch.end == 9 for stretch in course.stretches())
     changed = {
         fit.frame: fit for fits in looked_again(tracker, course, reader(seen)) for fit in fits
     }
@@ -99,7 +111,7 @@ def test_a_locked_pose_bounds_what_later_locks_change(scene):
     fits = with_poses(scene, scene[2])
     for frame in (4, 9):
         fits[frame] = replace(fits[frame], locked=True)
-    assert course_of(fits).stretches() == [(0, 4), (5, 9)]
+    assert course_of(fits).stretches() == [(0, 4, None), (5, 9, None)]
 
 
 def test_frames_with_locks_have_that_pose_and_the_next_starts_from_it(scene):
