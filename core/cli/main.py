@@ -18,6 +18,7 @@ from .events import JsonConsole
 from .failures import internal_fault
 from .interrupts import interruptible
 from .logs import Log
+from .memory import keep_freed_memory
 from .options import add_common, asked_progress
 
 if TYPE_CHECKING:
@@ -53,6 +54,7 @@ def main(argv: Sequence[str], exporter: "Exporter | None" = None) -> int:
         The exit code: 0 done, 1 internal error, 2 the input is at fault, 3 frames were lost and
         ``--strict`` was given, 130 interrupted.
     """
+    keep_freed_memory()
     console = _console(asked_progress(argv))
     with Log(console) as log:
 

@@ -86,7 +86,8 @@ def better_limbs(cost: LimbCost, starts: np.ndarray, settings: LimbSettings) -> 
     """
     own = cost.pose[None]
     poses = cost.moved(np.concatenate([own, starts]))
-    costs, limit, rng = cost(poses), cost(own)[0], np.random.default_rng(0)
+    costs, rng = cost(poses), np.random.default_rng(0)
+    limit = costs[0]
     for spread in settings.spreads_rad:
         poses, costs = _next_generation(cost, poses, costs, (spread, settings.near), rng)
         if costs[0] >= limit:
