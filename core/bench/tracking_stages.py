@@ -70,7 +70,7 @@ def _looked_again(fits: dict[int, FrameFit], fps: float, views: Views, start: Be
     def read(frames: Sequence[int]) -> Iterator[tuple[int, tuple[Silhouette, ...]]]:
         return ((frame, views.silhouettes(frame)) for frame in frames)
 
-    for changed in looked_again(tracker, Course(fits, list(fits), fps), read):
+    for changed in looked_again(tracker, Course(fits, list(fits), fps, start.body), read):
         fits.update((fit.frame, fit) for fit in changed)
 
 

@@ -4,6 +4,7 @@ The plain statement of the convention in `body.py`, made of SciPy rotations: slo
 oracle of the native transforms.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
@@ -15,6 +16,8 @@ from .body import Body, DofKind, Surface
 
 TOLERANCE = 1e-9
 """Slack of the limits, rad or m: a value put on its limit stays within it."""
+_BLOCK = 500
+"""Poses."""
 
 
 def joint_transforms(body: Body, poses: np.ndarray) -> np.ndarray:
@@ -76,6 +79,18 @@ def carried_points(body: Body, transforms: np.ndarray) -> np.ndarray:
     """(N, 14, 3) world metres of `POINT_NAMES`, of world_from_joint (N, J, 3, 4)."""
     transforms = transforms[:, body.point_joints]
     return (transforms[..., :3] @ body.point_offsets[..., None])[..., 0] + transforms[..., 3]
+
+
+def in_blocks(
+    places: Callable[[Body, np.ndarray], np.ndarray], body: Body, poses: np.ndarray
+) -> np.ndarray:
+    """The (T, …) places of all poses; long takes would need much memory for their transforms."""
+    first = places(body, poses[:_BLOCK])
+    found = np.empty((len(poses), *first.shape[1:]))
+    found[:_BLOCK] = first
+    for begin in range(_BLOCK, len(poses), _BLOCK):
+        found[begin : begin + _BLOCK] = places(body, poses[begin : begin + _BLOCK])
+    return found
 
 
 def rest_joints(body: Body) -> np.ndarray:

@@ -56,7 +56,8 @@ class Passes:
     @cached_property
     def courses(self) -> tuple[Course, ...]:
         """What there is for the second look, once all frames are kept."""
-        return tuple(Course(self.fits, frames, self.fps) for frames in self.directions)
+        body = self.tracker.evaluator.body
+        return tuple(Course(self.fits, frames, self.fps, body) for frames in self.directions)
 
     def second(self, read: Read) -> Iterator[list[FrameFit]]:
         """The fits that the second look changes, stretch by stretch of the `courses`."""

@@ -2,7 +2,8 @@
 
 Where lumps remain that are unusual in the take, a limb may have been lost; the pose of a frame
 further on, where nothing speaks against it, leads back through the stretch the other way. So does
-a pose that the user has locked, until both passes agree. And where the doubt begins, other poses
+the pose after a leap within the stretch, as a limb may have been found again there, and one that
+the user has locked, until both passes agree. And where the doubt begins, other poses
 may explain the frame as well as the one that was taken: from these rivals the stretch is passed
 through once more. Of each frame's candidates (all passes, and limbs of one with the rest of the
 other) a path is chosen that explains the silhouettes and moves as people can (Viterbi), joined to
@@ -18,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..body.body import Body
-from ..body.kinematics import points
+from ..body.kinematics import in_blocks, points
 from ..energy.weight_maps import xor_weight_maps
 from ..silhouettes.silhouette import Silhouette
 from .limbs import points_of
@@ -44,7 +45,11 @@ _BETTER = 0.005
 """Share of the silhouettes' area that tells two poses apart."""
 _MPS = 2.0
 """Speed, m/s, of a point that costs as much."""
-_LEAP = 10.0
+_LEAP_MPS = 6.0
+"""Speed, m/s, of a point between two frames, that tells of a loss or of its end."""
+_LEAPS = 3
+"""Most of them that a doubtful stretch is passed back from."""
+_LEAP = 30.0
 """What a leap of any length costs, in the same unit."""
 _MIXED = 2
 """Most limbs in which passes may differ for their poses to be mixed."""
@@ -61,11 +66,14 @@ class Stretch(NamedTuple):
         begin: the first.
         end: the one after the last, which is trusted or locked, or the number of all frames.
         doubt: the first that is doubtful; None where only a locked pose leads back.
+        leaps: those after ``doubt`` whose pose nobody reaches in time from the one before: there a
+            limb was lost, or found again.
     """
 
     begin: int
     end: int
     doubt: int | None = None
+    leaps: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,11 +84,13 @@ class Course:
         fits: theirs, perhaps among others.
         frames: numbers of the T frames.
         fps: frames per second.
+        body: whose poses they are.
     """
 
     fits: Fits
     frames: Sequence[int]
     fps: float
+    body: Body
 
     def fit(self, index: int) -> FrameFit:
         """The fit of the frame that was tracked as number ``index``."""
@@ -102,7 +112,8 @@ class Course:
             doubt = index
             while index < len(doubtful) and doubtful[index : index + _CALM].any():
                 index += 1
-            found[index] = Stretch(max(doubt - _BACK, 0), index, doubt)
+            leaps = self._leaps(doubt, index)
+            found[index] = Stretch(max(doubt - _BACK, 0), index, doubt, leaps)
         stretches = []
         for end, stretch in sorted(found.items()):
             before = [int(lock) + 1 for lock in np.flatnonzero(locked[:end])]
@@ -110,6 +121,14 @@ class Course:
             if begin < end:
                 stretches.append(stretch._replace(begin=begin))
         return stretches
+
+    def _leaps(self, begin: int, end: int) -> tuple[int, ...]:
+        """The farthest leaps of poses after ``begin`` and before ``end``, see `Stretch`."""
+        poses = columns(self.fits, self.frames[begin:end], lambda fit: (fit.pose,))[0]
+        moves = np.diff(in_blocks(points, self.body, poses), axis=0) * self.fps
+        speeds = np.linalg.norm(moves, axis=2).max(axis=1, initial=0.0)
+        farthest = np.argsort(-speeds, kind="stable")[:_LEAPS]
+        return tuple(sorted((farthest[speeds[farthest] > _LEAP_MPS] + begin + 1).tolist()))
 
     @cached_property
     def usual(self) -> np.ndarray:
@@ -144,8 +163,9 @@ def looked_again(tracker: Tracker, course: Course, read: Read) -> Iterator[list[
 def _joined(tracker: Tracker, course: Course, stretch: Stretch, read: Read) -> Iterator[FrameFit]:
     """The fits of the frames of a stretch that change."""
     body = tracker.evaluator.body
-    back = _passed_back(tracker, course, stretch, read)
+    back = _passed_back(tracker, course, (stretch.begin, stretch.end), read)
     passes = [back, *_passed_by_rivals(tracker, course, stretch, read)]
+    passes += [_passed_back(tracker, course, (stretch.begin, leap), read) for leap in stretch.leaps]
     others = {
         i: [found[i] for found in passes if i in found and _differs(course, body, i, found[i])]
         for i in range(stretch.begin, stretch.end)
@@ -184,13 +204,14 @@ def _differs(course: Course, body: Body, index: int, pose: np.ndarray) -> bool:
 
 
 def _passed_back(
-    tracker: Tracker, course: Course, stretch: Stretch, read: Read
+    tracker: Tracker, course: Course, span: tuple[int, int], read: Read
 ) -> dict[int, np.ndarray]:
-    """The poses (D,) by index of a pass from the stretch's end, if there is a pose to trust."""
-    if stretch.end == len(course.frames):
+    """The poses (D,) by index of a pass from after the span (begin, end), if a frame is there."""
+    begin, end = span
+    if end == len(course.frames):
         return {}
-    history = History(tracker.evaluator.body, course.fit(stretch.end).pose)
-    return _passed(tracker, course, history, range(stretch.end - 1, stretch.begin - 1, -1), read)
+    history = History(tracker.evaluator.body, course.fit(end).pose)
+    return _passed(tracker, course, history, range(end - 1, begin - 1, -1), read)
 
 
 def _passed_by_rivals(

@@ -1,17 +1,14 @@
 """Tracked frames put together as a motion."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from fractions import Fraction
 
 import numpy as np
 
 from ..body.body import POINT_NAMES, Body
-from ..body.kinematics import joint_positions, points
+from ..body.kinematics import in_blocks, joint_positions, points
 from ..fitting.tracking import Fits, FrameFit, columns
 from .motion import Motion
-
-_BLOCK = 500
-"""Poses."""
 
 
 def recorded(fits: Fits, body: Body, camera_names: Sequence[str], fps: Fraction) -> Motion:
@@ -54,15 +51,3 @@ def _recorded(fit: FrameFit) -> tuple:
     s = fit.scores
     shares = (s.xor_px, s.iou, s.view_weights, s.limb_residual)
     return (fit.pose, fit.locked, *shares, s.confidence, s.lost)
-
-
-def in_blocks(
-    places: Callable[[Body, np.ndarray], np.ndarray], body: Body, poses: np.ndarray
-) -> np.ndarray:
-    """The (T, …) places of all poses; long takes would need much memory for their transforms."""
-    first = places(body, poses[:_BLOCK])
-    found = np.empty((len(poses), *first.shape[1:]))
-    found[:_BLOCK] = first
-    for begin in range(_BLOCK, len(poses), _BLOCK):
-        found[begin : begin + _BLOCK] = places(body, poses[begin : begin + _BLOCK])
-    return found

@@ -9,11 +9,10 @@ from dataclasses import asdict, dataclass, replace
 import numpy as np
 
 from ...body.body import Body
-from ...body.kinematics import joint_positions, points
+from ...body.kinematics import in_blocks, joint_positions, points
 from ...errors import MocapError
 from ...progress import Progress
 from ..motion import Motion
-from ..recording import in_blocks
 from .feet import Feet, mean_and_max, with_feet_held
 from .key_reduction import Keys, reduced_keys
 from .settings import CleanSettings

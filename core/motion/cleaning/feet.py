@@ -5,10 +5,9 @@ from dataclasses import asdict, dataclass, replace
 import numpy as np
 
 from ...body.body import Body
-from ...body.kinematics import joint_transforms
+from ...body.kinematics import in_blocks, joint_transforms
 from ...progress import Progress
 from ..motion import Motion
-from ..recording import in_blocks
 from .contacts import FEET, Contact, contacts, slides, touching
 from .foot_lock import Floor, FootLock
 from .soles import Soles

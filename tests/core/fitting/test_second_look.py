@@ -43,7 +43,7 @@ def with_poses(scene, poses):
 
 
 def course_of(fits):
-    return Course(fits, range(FRAMES), 15.0)
+    return Course(fits, range(FRAMES), 15.0, small_body("performer"))
 
 
 def test_what_nobody_doubts_is_not_looked_at_again(scene):
@@ -57,10 +57,20 @@ def test_a_stretch_runs_from_before_the_doubt_to_the_first_calm_frame(scene):
     lumpy = replace(fits[0].scores, lumps=np.full(5, 0.05))
     for frame in (4, 6):
         fits[frame] = replace(fits[frame], scores=lumpy)
-    assert course_of(fits).stretches() == [(0, 7, 4)]
+    assert course_of(fits).stretches() == [(0, 7, 4, ())]
     # doubt that lasts to the end has no frame to come back from
     fits[11] = replace(fits[11], scores=lumpy)
-    assert course_of(fits).stretches() == [(0, 7, 4), (0, FRAMES, 11)]
+    assert course_of(fits).stretches() == [(0, 7, 4, ()), (0, FRAMES, 11, ())]
+
+
+def test_where_the_pose_leaps_within_a_doubtful_stretch_is_told(scene):
+    body, _, truth, _ = scene
+    away = truth[6] + dof_values(body, root_x=1.0)
+    fits = with_poses(scene, [*truth[:6], away, *truth[7:]])
+    lumpy = replace(fits[0].scores, lumps=np.full(5, 0.05))
+    for frame in range(4, 8):
+        fits[frame] = replace(fits[frame], scores=lumpy)
+    assert course_of(fits).stretches() == [(0, 8, 4, (6, 7))]
 
 
 def test_an_arm_lost_for_a_while_is_found_from_the_other_end(scene):
@@ -111,7 +121,7 @@ def test_a_locked_pose_bounds_what_later_locks_change(scene):
     fits = with_poses(scene, scene[2])
     for frame in (4, 9):
         fits[frame] = replace(fits[frame], locked=True)
-    assert course_of(fits).stretches() == [(0, 4, None), (5, 9, None)]
+    assert course_of(fits).stretches() == [(0, 4, None, ()), (5, 9, None, ())]
 
 
 def test_frames_with_locks_have_that_pose_and_the_next_starts_from_it(scene):

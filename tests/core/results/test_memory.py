@@ -11,6 +11,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from silhouette_mocap.core.body import kinematics
 from silhouette_mocap.core.fitting.camera_health import camera_findings
 from silhouette_mocap.core.fitting.passes import Passes, directions_from
 from silhouette_mocap.core.fitting.scores import frame_scores
@@ -93,7 +94,7 @@ def test_another_frame_takes_next_to_no_memory(journals, stage):
 
 
 def test_results_take_hardly_more_memory_than_their_arrays(journals, monkeypatch, tmp_path):
-    monkeypatch.setattr(recording, "_BLOCK", 50)
+    monkeypatch.setattr(kinematics, "_BLOCK", 50)
 
     def results(journal):
         names = [camera.name for camera in CAMERAS]
