@@ -41,7 +41,7 @@ _LEAP_M = 0.2
 """From what is expected, by which a joint of a limb has hardly moved."""
 _ELSEWHERE = 0.4
 """Foreground that is unexplained where a limb has been dropped, as a share of what is gone."""
-_WATCHED = 3
+_WATCHED = 4
 """Frames in a row that are not explained, after each of which other headings are tried."""
 _HEADINGS = 2
 """Of them that are gone on with."""
@@ -180,10 +180,10 @@ def _recover_heading(search: ContourSearch) -> None:
     lumps = search.lumps(own).sum(axis=0) if (search.past.amiss + 1) % _WATCHED == 0 else None
     if lumps is None or not unexplained(lumps, search.past.usual):
         return
-    found = sorted(
-        (_sought_from(search, start) for start in turned(search.evaluator, own)), key=itemgetter(0)
-    )
-    found += [_sought_from(search, pose) for _, pose in found[:_HEADINGS]]
+    arms = [(limb, part) for limb, part in search.sought if LIMB_NAMES[limb] in ARMS]
+    starts = turned(search.evaluator, own)
+    found = sorted((_sought_from(search, start, arms) for start in starts), key=itemgetter(0))
+    found += [_sought_from(search, pose, search.sought) for _, pose in found[:_HEADINGS]]
     cost, pose = min(found, key=itemgetter(0))
     better = cost < _CLEARLY * search.costs(own[None])[0]
     better = better and search.lumps(pose).sum(axis=0).max() < _MOSTLY * lumps.max()
@@ -191,10 +191,12 @@ def _recover_heading(search: ContourSearch) -> None:
     search.take((pose if better else own)[None])
 
 
-def _sought_from(search: ContourSearch, start: np.ndarray) -> tuple[float, np.ndarray]:
-    """Cost and pose (D,) where a start (D,) leads to, the arms sought everywhere."""
+def _sought_from(
+    search: ContourSearch, start: np.ndarray, sought: Sequence[tuple[int, Part]]
+) -> tuple[float, np.ndarray]:
+    """Cost and pose (D,) where a start (D,) leads to, some parts sought, the arms everywhere."""
     search.expect(start)
     search.take(search.descended(start, start, 1.0)[None])
-    for limb, part in search.sought:
+    for limb, part in sought:
         search.seek(part, LIMB_NAMES[limb] in ARMS)
     return float(search.costs(search.pose[None])[0]), search.pose

@@ -35,6 +35,8 @@ _EITHER = 0.3
 """Times the confidence that a point has where each pass puts it elsewhere."""
 _AGREEING = 2
 """Frames in a row in which both passes have to agree."""
+_WORSE, _HOPELESS = 1.1, 8
+"""Times the px that differ in the first pass, and frames in a row with more, that end another."""
 _CALM = 3
 """Frames in a row without doubt, of which the first is trusted."""
 _UNUSUAL, _LITTLE_M2 = 1.6, 0.008
@@ -238,14 +240,16 @@ def _passed_by_rivals(
 def _passed(
     tracker: Tracker, course: Course, history: History, indices: Sequence[int], read: Read
 ) -> dict[int, np.ndarray]:
-    """The poses (D,) that a pass over ``indices`` finds, by index, until it agrees."""
+    """The poses (D,) by index of a pass over ``indices``, until it agrees or is hopeless."""
     passed = track(tracker, history, read([course.frames[i] for i in indices]))
-    found, agreeing = {}, 0
+    found, agreeing, worse = {}, 0, 0
     for index, fit in zip(indices, passed, strict=False):
-        found[index] = fit.pose
+        found[index], first = fit.pose, course.fit(index)
         differs = _differs(course, tracker.evaluator.body, index, fit.pose)
         agreeing = 0 if differs else agreeing + 1
-        if agreeing == _AGREEING:
+        is_worse = fit.scores.xor_px.sum() > _WORSE * first.scores.xor_px.sum()
+        worse = worse + 1 if is_worse else 0
+        if agreeing == _AGREEING or worse == _HOPELESS:
             break
     return found
 
