@@ -112,10 +112,10 @@ class Course:
                 index += 1
                 continue
             doubt = index
-            while index < len(doubtful) and doubtful[index : index + _CALM].any():
+            while doubtful[index : index + _CALM].any() and not locked[index]:
                 index += 1
-            leaps = self._leaps(doubt, index)
-            found[index] = Stretch(max(doubt - _BACK, 0), index, doubt, leaps)
+            begin = 0 if index in found else max(doubt - _BACK, 0)
+            found[index] = Stretch(begin, index, doubt, self._leaps(doubt, index))
         stretches = []
         for end, stretch in sorted(found.items()):
             before = [int(lock) + 1 for lock in np.flatnonzero(locked[:end])]

@@ -124,6 +124,23 @@ def test_a_locked_pose_bounds_what_later_locks_change(scene):
     assert course_of(fits).stretches() == [(0, 4, None, ()), (5, 9, None, ())]
 
 
+def test_a_locked_pose_leads_back_as_far_where_doubt_lies_before_it(scene):
+    lumpy = replace(fit_of(scene, 0, scene[2][0]).scores, lumps=np.full(5, 0.05))
+    fits = {frame: fit_of(scene, 0, scene[2][0], frame == 22) for frame in range(24)}
+    fits[21] = replace(fits[21], scores=lumpy)
+    course = Course(fits, range(24), 15.0, small_body("performer"))
+    assert course.stretches() == [(0, 22, 21, ())]
+
+
+def test_doubt_on_both_sides_of_a_locked_pose_is_two_stretches(scene):
+    fits = with_poses(scene, scene[2])
+    lumpy = replace(fits[0].scores, lumps=np.full(5, 0.05))
+    for frame in (3, 5):
+        fits[frame] = replace(fits[frame], scores=lumpy)
+    fits[4] = replace(fits[4], locked=True)
+    assert course_of(fits).stretches() == [(0, 4, 3, ()), (5, 6, 5, ())]
+
+
 def test_frames_with_locks_have_that_pose_and_the_next_starts_from_it(scene):
     body, tracker, truth, seen = scene
     lock = dof_values(body, left_shoulder_abduction=0.3)
