@@ -46,8 +46,9 @@ class Passes:
             read: yields the number and silhouettes of frames, in another thread.
             locks: poses (D,) that are given, by frame.
         """
+        begin = locks.get(self.directions[0][0], self.pose)
         for frames in self.directions:
-            history = History(self.tracker.evaluator.body, self.pose)
+            history = History(self.tracker.evaluator.body, begin)
             for kept in (self.fits[frame] for frame in frames if frame in self.fits):
                 history.add(kept.pose, kept.scores.lumps, kept.locked)
             left = [frame for frame in frames if frame not in self.fits]
