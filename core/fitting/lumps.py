@@ -163,6 +163,10 @@ def first_joint_and_length(body: Body, segments: tuple[int, ...]) -> tuple[int, 
 def _thick(differing: np.ndarray, metre: float) -> np.ndarray:
     """(n, 2) px (x, y) where more than a seam differs."""
     side = max(3, round(THICK_M / metre) | 1)
+    # beside a camera the kernel is far larger than the picture; half of it fits in at an edge
+    extents = (axis.stop - axis.start for axis in box_round(differing))
+    if any(a <= side // 2 and a < b for a, b in zip(extents, differing.shape, strict=True)):
+        return np.zeros((0, 2), int)
     # with room for what erodes the lumps from outside
     rows, columns = box_round(differing, margin_px=side)
     kernel = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (side, side))

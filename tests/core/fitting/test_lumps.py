@@ -42,6 +42,12 @@ def test_what_is_thinner_than_a_wrist_is_no_lump():
         assert bool(Lumps.of([seen.foreground], [blank], np.array([0.01]))) == lumpy
 
 
+def test_beside_a_camera_nothing_is_as_thick_as_a_wrist():
+    seen, empty = squares(12)
+    for model in (empty, seen.foreground):
+        assert not Lumps.of([model], [seen], np.array([1e-7]))
+
+
 def test_a_lump_keeps_its_area_and_place():
     seen, empty = squares(12)
     lumps = Lumps.of([empty], [seen], np.array([0.01]))
