@@ -36,16 +36,14 @@ def read_locks(path: Path | None, body: Body, frames: tuple[int, int]) -> dict[i
         return {}
     remedy = "write frames (L,), pose (L, D) and dof_names (D,) into it"
     stored = read_archive(path, "locked poses", remedy)
-    names, poses, numbers = _checked(path, stored, remedy)
+    names, poses, numbers, marked = _checked(path, stored, remedy)
     if set(names) != set(body.dofs.names):
         odd = sorted(set(names) ^ set(body.dofs.names))[0]
         raise MocapError(
             f'holds poses of another body: "{odd}" is not in both',
             f'lock poses of the body "{body.name}"', file=path,
         )  # fmt: skip
-    chosen = (numbers >= frames[0]) & (numbers <= frames[1])
-    if "locked" in stored:
-        chosen &= stored["locked"].astype(bool)
+    chosen = marked & (numbers >= frames[0]) & (numbers <= frames[1])
     poses = poses[:, [names.index(name) for name in body.dofs.names]]
     for frame, pose in zip(numbers[chosen].tolist(), poses[chosen], strict=True):
         _check_within(path, body, frame, pose)
@@ -54,19 +52,22 @@ def read_locks(path: Path | None, body: Body, frames: tuple[int, int]) -> dict[i
 
 def _checked(
     path: Path, stored: dict[str, np.ndarray], remedy: str
-) -> tuple[list[str], np.ndarray, np.ndarray]:
-    """DOF names, poses (L, D) and frames (L,) of the right shapes."""
+) -> tuple[list[str], np.ndarray, np.ndarray, np.ndarray]:
+    """DOF names, poses (L, D), frames (L,) and which count (L,) bool, of the right shapes."""
     try:
         names = [str(name) for name in stored["dof_names"]]
         poses, numbers = stored["pose"].astype(float), stored["frames"].astype(np.int64)
+        marked = stored.get("locked", np.ones(numbers.shape)).astype(bool)
     except (KeyError, ValueError, TypeError) as error:
         raise MocapError(f"holds no locked poses ({error})", remedy, file=path) from error
     sound = numbers.ndim == 1 and poses.shape == (len(numbers), len(names))
-    if not sound or stored.get("locked", numbers).shape != numbers.shape:
+    if not sound or marked.shape != numbers.shape:
         raise MocapError("holds arrays that do not belong together", remedy, file=path)
+    if (numbers != stored["frames"]).any():
+        raise MocapError("holds frames that are no whole numbers", remedy, file=path)
     if len(set(numbers.tolist())) < len(numbers):
         raise MocapError("locks a frame twice", "leave one pose per frame", file=path)
-    return names, poses, numbers
+    return names, poses, numbers, marked
 
 
 def _check_within(path: Path, body: Body, frame: int, pose: np.ndarray) -> None:
