@@ -9,6 +9,8 @@ from ..geometry.boxes import box_round
 
 BLUR_PX = 0.7
 """Standard deviation that takes the pixels' steps out of the distances."""
+_MOST_AT_ONCE = 30_000
+"""Points that OpenCV looks up; it counts them in 16 bits."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,11 +74,15 @@ def _to_zero(field: np.ndarray, px: np.ndarray) -> tuple[np.ndarray, np.ndarray]
     if not len(px):
         return px, px
     slopes = cv2.Sobel(field, -1, 1, 0, scale=1 / 8), cv2.Sobel(field, -1, 0, 1, scale=1 / 8)
-    values = [
-        cv2.remap(picture, px[:, 0], px[:, 1], cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
-        for picture in (field, *slopes)
-    ]
-    value, x, y = (v[:, 0] for v in values)
+    value, x, y = (_sampled(picture, px) for picture in (field, *slopes))
     length = np.maximum(np.hypot(x, y), 1e-6)
     normals = np.stack([x, y], axis=1) / length[:, None]
     return normals * (value / length)[:, None], normals
+
+
+def _sampled(picture: np.ndarray, px: np.ndarray) -> np.ndarray:
+    """(n,) values of a picture at px (n, 2)."""
+    blocks = np.array_split(px, len(px) // _MOST_AT_ONCE + 1)
+    nearest = {"borderMode": cv2.BORDER_REPLICATE}
+    found = [cv2.remap(picture, b[:, 0], b[:, 1], cv2.INTER_LINEAR, **nearest) for b in blocks]
+    return np.concatenate(found)[:, 0]

@@ -66,3 +66,11 @@ def test_nobody_and_nothing_else_have_no_contour():
         contour = Silhouette(mask, everywhere(mask)).contour
         assert contour.px.shape == contour.normals.shape == (0, 2)
         assert np.isnan(contour.field).all()
+
+
+def test_a_picture_of_nothing_but_noise_has_its_contour_too():
+    noise = np.random.default_rng(0).random((240, 320)) < 0.5
+    found = Silhouette(noise, everywhere(noise)).contour
+    crossings = sum(np.count_nonzero(np.diff(noise, axis=axis)) for axis in (0, 1))
+    assert len(found.px) == crossings > 1 << 15
+    np.testing.assert_allclose(np.linalg.norm(found.normals, axis=1), 1.0, atol=1e-5)
