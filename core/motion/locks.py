@@ -57,17 +57,19 @@ def _checked(
     try:
         names = [str(name) for name in stored["dof_names"]]
         poses, numbers = stored["pose"].astype(float), stored["frames"].astype(np.int64)
-        marked = stored.get("locked", np.ones(numbers.shape)).astype(bool)
+        marked = stored.get("locked", np.ones(numbers.shape, bool))
     except (KeyError, ValueError, TypeError) as error:
         raise MocapError(f"holds no locked poses ({error})", remedy, file=path) from error
     sound = numbers.ndim == 1 and poses.shape == (len(numbers), len(names))
     if not sound or marked.shape != numbers.shape:
         raise MocapError("holds arrays that do not belong together", remedy, file=path)
+    if marked.dtype.kind not in "bui":
+        raise MocapError("marks frames as locked by no truth values", remedy, file=path)
     if (numbers != stored["frames"]).any():
         raise MocapError("holds frames that are no whole numbers", remedy, file=path)
     if len(set(numbers.tolist())) < len(numbers):
         raise MocapError("locks a frame twice", "leave one pose per frame", file=path)
-    return names, poses, numbers, marked
+    return names, poses, numbers, marked.astype(bool)
 
 
 def _check_within(path: Path, body: Body, frame: int, pose: np.ndarray) -> None:

@@ -83,6 +83,8 @@ def _to_zero(field: np.ndarray, px: np.ndarray) -> tuple[np.ndarray, np.ndarray]
 def _sampled(picture: np.ndarray, px: np.ndarray) -> np.ndarray:
     """(n,) values of a picture at px (n, 2)."""
     blocks = np.array_split(px, len(px) // _MOST_AT_ONCE + 1)
-    nearest = {"borderMode": cv2.BORDER_REPLICATE}
-    found = [cv2.remap(picture, b[:, 0], b[:, 1], cv2.INTER_LINEAR, **nearest) for b in blocks]
+    found = [
+        cv2.remap(picture, b[:, 0], b[:, 1], cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
+        for b in blocks
+    ]
     return np.concatenate(found)[:, 0]
