@@ -49,6 +49,13 @@ class _Still(ContourTracker):
         return super().fit(silhouettes, replace(past, predicted=past.last))
 
 
+class _Unturned(ContourTracker):
+    """The default tracker, but that no frame counts as unexplained for long."""
+
+    def fit(self, silhouettes, past: Past) -> PoseFit:
+        return super().fit(silhouettes, replace(past, amiss=0))
+
+
 DEFAULT = Variant("contour", Search("contour").made)
 HIERARCHICAL = Variant("hierarchical", Search("hierarchical").made)
 HELD = Variant("hold the first pose", HoldLast, second_look=False)
@@ -64,6 +71,7 @@ def ablations() -> tuple[Variant, ...]:
         Variant("all views count the same", _contour(views_weighed=False)),
         Variant("no limb is sought again", _contour(limbs=None)),
         Variant("limbs are sought near by only", _contour(limbs=near)),
+        Variant("the trunk is never turned", _Unturned),
         Variant("no movement is expected to go on", _Still),
         Variant("no rest prior where ends are compared", _contour(prior_share=0.0)),
         Variant("no rest prior in descents", _contour(descent=DescentSettings(rest=0.0))),
