@@ -23,7 +23,7 @@ from .limbs import LIMB_NAMES, limb_segments
 from .lumps import Lumps
 from .part_search import rest_prior
 from .scores import metres_at
-from .tracker import LEAST_AREA, Past, PoseFit, Tally
+from .tracker import Past, PoseFit, Tally, shows_nobody
 from .view_trust import view_weights
 
 
@@ -102,7 +102,7 @@ class ContourSearch:
         covered = [np.count_nonzero(picture) for picture in self.evaluator.silhouettes(self.last)]
         self.shown_px = self._weights.constants + covered
         observed_px = int(self._weights.constants.sum())
-        self.shown = observed_px >= LEAST_AREA * sum(covered)
+        self.shown = not shows_nobody(observed_px, sum(covered))
         self._prior_px = settings.prior_share * observed_px
 
     @property

@@ -149,7 +149,8 @@ class _FrameSearch:
 
     def run(self) -> PoseFit:
         rounds = self.tracker.settings.rounds
-        if shows_nobody(self.tracker.evaluator, self.last, self.observed_px):
+        pictures = self.tracker.evaluator.silhouettes(self.last)
+        if shows_nobody(self.observed_px, sum(map(np.count_nonzero, pictures))):
             rounds, self.pose = 0, self.last.copy()
             self.cost = float(self._costs(self.pose[None])[0])
         for number in range(rounds):

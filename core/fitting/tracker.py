@@ -13,7 +13,7 @@ from ..silhouettes.silhouette import Silhouette
 
 EvaluatorFactory = Callable[[Body, tuple[Camera, ...]], Evaluator]
 
-LEAST_AREA = 0.2
+_LEAST_AREA = 0.2
 """Of what a pose covers; with less foreground, nobody is shown."""
 
 
@@ -52,13 +52,12 @@ class PoseFit:
     rivals: tuple[np.ndarray, ...] = ()
 
 
-def shows_nobody(evaluator: Evaluator, pose: np.ndarray, observed_px: int) -> bool:
-    """Whether ``observed_px`` of foreground are a fraction only of what a pose (D,) covers.
+def shows_nobody(observed_px: int, covered_px: int) -> bool:
+    """Whether the foreground is a fraction only of what the pose before covers, both in px.
 
     A search would then walk the body out of the pictures, from where none leads back.
     """
-    covered = sum(np.count_nonzero(picture) for picture in evaluator.silhouettes(pose))
-    return observed_px < LEAST_AREA * covered
+    return observed_px < _LEAST_AREA * covered_px
 
 
 @dataclass(frozen=True, eq=False)
