@@ -42,7 +42,8 @@ _LEAP_M = 0.2
 _ELSEWHERE = 0.4
 """Foreground that is unexplained where a limb has been dropped, as a share of what is gone."""
 _WATCHED = 4
-"""Frames in a row that are not explained, after each of which other headings are tried."""
+"""Frames in a row that are not explained, after which other headings are tried; then after twice
+as many, and so on."""
 _HEADINGS = 2
 """Of them that are gone on with."""
 _CLEARLY, _MOSTLY = 0.97, 0.6
@@ -177,8 +178,11 @@ def _recover_heading(search: ContourSearch) -> None:
     What was expected counts for nothing then.
     """
     own, expected = search.pose, search.trusted
-    lumps = search.lumps(own).sum(axis=0) if (search.past.amiss + 1) % _WATCHED == 0 else None
-    if lumps is None or not unexplained(lumps, search.past.usual):
+    frames = search.past.amiss + 1
+    if frames < _WATCHED or frames & (frames - 1):
+        return
+    lumps = search.lumps(own).sum(axis=0)
+    if not unexplained(lumps, search.past.usual):
         return
     arms = [(limb, part) for limb, part in search.sought if LIMB_NAMES[limb] in ARMS]
     starts = turned(search.evaluator, own)
