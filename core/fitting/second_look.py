@@ -30,9 +30,10 @@ from .tracking import Fits, FrameFit, History, columns, track, usual_lumps
 AGREED_M = 0.03
 """Two poses whose points are all nearer to each other are the same."""
 APART_M = 0.1
-"""Passes that differ by more tell of a frame that is lost, where neither explains it better."""
+"""Passes from both ends that differ by more tell of a frame that is lost, where neither explains it
+better."""
 _EITHER = 0.3
-"""Times the confidence that a point has where each pass puts it elsewhere."""
+"""Times the confidence of a point that another pass puts elsewhere and explains as much."""
 _AGREEING = 2
 """Frames in a row in which both passes have to agree."""
 _WORSE, _HOPELESS = 1.1, 8
@@ -186,19 +187,27 @@ def _joined(tracker: Tracker, course: Course, stretch: Stretch, read: Read) -> I
     outer = (indices[0] - 1, indices[-1] + 1)
     ends = [course.fit(i).pose for i in outer if 0 <= i < len(course.frames)]
     path = _path(body, candidates, costs, ends if indices[0] else [None, *ends], course.fps)
-    chosen: dict[int, tuple[np.ndarray, np.ndarray | None]] = {}
+    chosen: dict[int, tuple[np.ndarray, np.ndarray, bool]] = {}
     for index, k, poses, cost in zip(indices, path, candidates, costs, strict=True):
-        apart = _apart(body, poses[0], back[index]) if index in back else np.zeros(1)
-        ambiguous = apart.max() > APART_M and abs(cost[0] - cost[1]) < 1.0
-        if k or ambiguous:
-            chosen[index] = poses[k], apart if ambiguous else None
+        apart = _as_good_elsewhere(body, poses, cost, k)
+        if k or apart.any():
+            both_ends = bool(others[index]) and others[index][0] is back.get(index)
+            lost = both_ends and bool(apart[0 if k == 1 else 1].any())
+            chosen[index] = poses[k], apart.any(axis=0), lost
     seen = read([course.frames[i] for i in chosen])
-    for (index, (pose, apart)), (_, silhouettes) in zip(chosen.items(), seen, strict=True):
+    for (index, found), (_, silhouettes) in zip(chosen.items(), seen, strict=True):
+        pose, elsewhere, lost = found
         scores = frame_scores(tracker.evaluator, pose, silhouettes, course.usual)
-        if apart is not None:
-            likely = np.where(apart > APART_M, _EITHER, 1.0) * scores.confidence
-            scores = replace(scores, lost=True, confidence=likely)
+        likely = np.where(elsewhere, _EITHER, 1.0) * scores.confidence
+        scores = replace(scores, lost=scores.lost or lost, confidence=likely)
         yield replace(course.fit(index), pose=pose, scores=scores)
+
+
+def _as_good_elsewhere(body: Body, poses: np.ndarray, costs: np.ndarray, k: int) -> np.ndarray:
+    """(K, 14) bool, points that poses (K, D) put elsewhere than the k-th, and cost no more."""
+    places = points(body, poses)
+    apart = np.linalg.norm(places - places[k], axis=2) > APART_M
+    return apart & (np.abs(costs - costs[k]) < 1.0)[:, None]
 
 
 def _differs(course: Course, body: Body, index: int, pose: np.ndarray) -> bool:
