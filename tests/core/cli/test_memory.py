@@ -11,7 +11,7 @@ if {kept}:
     keep_freed_memory()
 def filled():
     for _ in range(10):
-        held = [np.ones(2_000_000) for _ in range(4)]
+        held = [np.ones(250_000) for _ in range(8)]
 filled()
 before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt
 filled()
