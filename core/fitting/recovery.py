@@ -34,11 +34,13 @@ def restarts(
     if len(hull):
         centre = hull.mean(axis=0)
     shifts = np.flatnonzero((body.dofs.joints == 0) & (body.dofs.kinds == DofKind.TRANSLATION))
-    turns = np.flatnonzero((body.dofs.joints == 0) & (body.dofs.kinds != DofKind.TRANSLATION))
+    tilts = np.flatnonzero((body.dofs.joints == 0) & (body.dofs.kinds != DofKind.TRANSLATION))
     upright = body.rest_pose.copy()
-    upright[turns] = pose[turns]
+    upright[tilts] = pose[tilts]
     shapes = np.repeat(np.stack([pose, upright]), _HEADINGS, axis=0)
-    shapes[:, heading_dof(body)] += np.tile(np.arange(_HEADINGS) * 2 * np.pi / _HEADINGS, 2)
+    # either way round, so that no angle grows with every restart
+    turns = np.linspace(-np.pi, np.pi, _HEADINGS, endpoint=False)
+    shapes[:, heading_dof(body)] += np.tile(turns, 2)
     middles = points(body, shapes).mean(axis=1)
     shapes[:, shifts] += (centre - middles) @ body.dofs.axes[shifts].T
     return shapes

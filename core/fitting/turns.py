@@ -5,6 +5,8 @@ nowhere to be found, each by itself as little as both together; only after the t
 on its feet, does every limb fall into place.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 from scipy.optimize import least_squares
 
@@ -31,7 +33,9 @@ def heading_dof(body: Body) -> int:
 def turned(evaluator: Evaluator, pose: np.ndarray) -> np.ndarray:
     """(n, D) poses with the trunk of ``pose`` (D,) turned either way, or not.
 
-    The legs stand where they are, the arms are as they are or at rest.
+    The legs stand where they are, the arms are as they are or at rest. Besides, the whole body
+    faces the other way with left and right exchanged, and the legs alone are. ``pose`` itself is
+    none of them.
     """
     body = evaluator.body
     legs = [part for part in body.parts if part.name in _LEGS]
@@ -44,8 +48,22 @@ def turned(evaluator: Evaluator, pose: np.ndarray) -> np.ndarray:
             start = _held(evaluator, pose, start, leg)
         resting = start.copy()
         resting[arms] = body.rest_pose[arms]
-        found += [start, resting] if turn else [resting]
-    return clamped(body, np.stack(found))
+        found += [start, resting]
+    about = _exchanged(body, pose, (*ARMS, *_LEGS))
+    about[heading_dof(body)] += np.pi if pose[heading_dof(body)] < 0 else -np.pi
+    poses = clamped(body, np.stack([*found, about, _exchanged(body, pose, _LEGS)]))
+    return poses[(poses != pose).any(axis=1)]
+
+
+def _exchanged(body: Body, pose: np.ndarray, limbs: Sequence[str]) -> np.ndarray:
+    """(D,) the pose whose left and right ``limbs`` have each other's angles."""
+    names, exchanged = list(body.dofs.names), pose.copy()
+    for dof in [dof for part in body.parts if part.name in limbs for dof in part.dofs]:
+        side, _, rest = names[dof].partition("_")
+        other = f"{'right' if side == 'left' else 'left'}_{rest}"
+        if other in names:
+            exchanged[dof] = pose[names.index(other)]
+    return exchanged
 
 
 def _held(evaluator: Evaluator, before: np.ndarray, pose: np.ndarray, part: Part) -> np.ndarray:
