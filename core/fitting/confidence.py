@@ -14,9 +14,9 @@ import numpy as np
 from ..body.body import POINT_NAMES
 from .limbs import limb_of
 
-WEIGHTS = np.array([1.308, -5.6, 1.982, -1.025, -1.111, -5.989, -7.369])
-"""Of 1, s = ln(spread / 10 mm) and its square where positive, ln(residual / 10 mm), lumps in m^2
-per view, share unexplained, and the root of the lumps beyond the usual ones."""
+WEIGHTS = np.array([1.65, -6.31, -0.66, -5.6, -7.67])
+"""Of 1, ln(spread / 10 mm), ln(residual / 10 mm), share unexplained, and the root of the lumps, m^2
+per view, beyond the usual ones. More of any but the first is never likelier."""
 _USUAL = 1.4
 """Times the usual lumps that are usual, too."""
 _LEAST_M = 0.002
@@ -42,16 +42,14 @@ class LimbSigns:
 
 
 def features(point_spreads: np.ndarray, signs: LimbSigns) -> np.ndarray:
-    """(14, 7) what `WEIGHTS` weigh; ``point_spreads`` (14,) m are those of `Observability`."""
+    """(14, 5) what `WEIGHTS` weigh; ``point_spreads`` (14,) m are those of `Observability`."""
     limbs = [limb_of(name) for name in POINT_NAMES]
     residual = np.maximum(np.nan_to_num(signs.residual, nan=_UNSEEN_M), _LEAST_M)
     spread = np.log(np.maximum(point_spreads, _LEAST_M) / 0.01)
     columns = (
         np.ones(len(limbs)),
         spread,
-        np.maximum(spread, 0.0) ** 2,
         np.log(residual / 0.01)[limbs],
-        signs.lumps[limbs],
         signs.unexplained[limbs],
         np.sqrt(np.maximum(signs.lumps - _USUAL * signs.usual, 0.0))[limbs],
     )

@@ -45,6 +45,13 @@ def test_each_sign_of_error_lowers_the_confidence_of_its_own_points(sign):
     np.testing.assert_array_equal(found[others], well[others])
 
 
+def test_what_nothing_fixes_is_never_likelier_however_well_the_rest_looks():
+    spreads = [0.005, 0.01, 0.02, 0.05, 0.1, 0.3, 1.0, 5.0]
+    found = [point_confidence(np.full(14, spread), WELL).max() for spread in spreads]
+    assert (np.diff(found) < 0).all()
+    assert found[-1] < 1e-3
+
+
 def test_lumps_that_are_usual_count_less():
     lumpy = replace(WELL, lumps=BAD.lumps)
     usual = replace(lumpy, usual=BAD.lumps)
