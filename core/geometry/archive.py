@@ -24,7 +24,7 @@ def write_archive(path: Path, **arrays) -> None:
     memory = io.BytesIO()
     np.savez_compressed(memory, **arrays)
     with whole_file(path) as partial:
-        partial.write_bytes(memory.getbuffer())
+        partial.write_bytes(memory.getvalue())
 
 
 def read_archive(path: Path, kind: str, remedy: str) -> dict[str, np.ndarray]:
