@@ -31,7 +31,7 @@ from .tracking_variants import DEFAULT
 READ, CONTOURS, PREPARED = "footage read", "contours found", "weights and doubts"
 OUTLINES, EQUATIONS = "descents: outlines drawn", "descents: equations"
 JUDGED, LIMBS, SCORES = "poses judged", "limbs sought", "scores"
-AGAIN, KEPT = "second look", "overlay and files"
+AGAIN, KEPT = "second look", "overlay, files, threads in each other's way"
 STAGES = (READ, CONTOURS, PREPARED, OUTLINES, EQUATIONS, JUDGED, LIMBS, SCORES, AGAIN, KEPT)
 
 
