@@ -25,19 +25,7 @@ from silhouette_mocap.core.rendering import detail
 from silhouette_mocap.core.results.exporting import check_formats, export
 from silhouette_mocap.core.take import InitialPose, read_take
 from silhouette_mocap.core.take.views import View
-
-
-class Notebook(Silence):
-    """Progress that remembers."""
-
-    def __init__(self):
-        self.notes, self.frames = [], []
-
-    def note(self, text):
-        self.notes.append(text)
-
-    def advance(self, frame, figures=None):
-        self.frames.append(frame)
+from small_take import Notes
 
 
 @pytest.fixture(scope="module")
@@ -128,7 +116,7 @@ def test_the_tracker_hierarchical_takes_more_evaluations(fitted, small_take, tmp
 
 def test_frames_before_the_initial_pose_are_tracked_backwards(quick_start, small_take, tmp_path):
     take = replace(read_take(small_take), initial_pose=InitialPose((1, 1), "A"))
-    progress = Notebook()
+    progress = Notes()
     result = fit(take, FitRequest(tmp_path, frames=(0, 2)), progress)
     assert progress.frames[:3] == [1, 2, 0]
     np.testing.assert_array_equal(result.motion.frames, [0, 1, 2])
@@ -186,11 +174,11 @@ def test_an_interrupted_fit_keeps_the_finished_frames(
             yield found
 
     monkeypatch.setattr(passes, "track", interrupted)
-    progress = Notebook()
+    progress = Notes()
     with pytest.raises(KeyboardInterrupt):
         fit(read_take(small_take), FitRequest(tmp_path), progress)
     np.testing.assert_array_equal(read_motion(tmp_path / "motion.npz").frames, [0, 1])
-    assert progress.notes[-1] == (
+    assert progress.told[-1] == (
         f"the 2 finished frames are kept in {tmp_path / 'motion.npz'}; --resume goes on"
     )
 

@@ -7,20 +7,10 @@ import pytest
 from silhouette_mocap.core.cli import main
 from silhouette_mocap.core.errors import MocapError
 from silhouette_mocap.core.pipeline import FitRequest, fit
-from silhouette_mocap.core.progress import Silence
 from silhouette_mocap.core.rendering.opengl import context, gpu
 from silhouette_mocap.core.results.journal import Journal
 from silhouette_mocap.core.take import read_take
-
-
-class Notebook(Silence):
-    """Progress that remembers."""
-
-    def __init__(self):
-        self.notes = []
-
-    def note(self, text):
-        self.notes.append(text)
+from small_take import Notes
 
 
 def report(out):
@@ -67,31 +57,31 @@ def failing_opengl(monkeypatch):
 
 
 def test_a_fit_by_opengl_says_so_and_is_not_resumed_by_another(quick_start, small_take, tmp_path):
-    take, notebook = read_take(small_take), Notebook()
+    take, notebook = read_take(small_take), Notes()
     frames = (0, 0)
     result = fit(take, FitRequest(tmp_path, evaluator="opengl", frames=frames), notebook)
     assert result.report["settings"]["evaluator"] == "opengl" and result.report["iou"] > 0.9
     assert result.report["evaluators"] == {"opengl": 1}
-    assert sum("OpenGL draws on" in note for note in notebook.notes) == 1
+    assert sum("OpenGL draws on" in note for note in notebook.told) == 1
     before = (tmp_path / "motion.npz").read_bytes()
-    fit(take, FitRequest(tmp_path, evaluator="opengl", frames=frames, resume=True), Notebook())
+    fit(take, FitRequest(tmp_path, evaluator="opengl", frames=frames, resume=True), Notes())
     assert (tmp_path / "motion.npz").read_bytes() == before
     with pytest.raises(MocapError, match=r"evaluator was opengl, now native"):
-        fit(take, FitRequest(tmp_path, frames=frames, resume=True), Notebook())
+        fit(take, FitRequest(tmp_path, frames=frames, resume=True), Notes())
 
 
 def test_a_fit_without_opengl_goes_on_with_the_native_evaluator_and_can_be_resumed(
     quick_start, small_take, tmp_path, no_driver
 ):
-    notebook = Notebook()
+    notebook = Notes()
     request = FitRequest(tmp_path, evaluator="opengl", frames=(0, 0))
     fit(read_take(small_take), request, notebook)
-    assert [note for note in notebook.notes if "OpenGL" in note] == [no_driver]
+    assert [note for note in notebook.told if "OpenGL" in note] == [no_driver]
     assert report(tmp_path)["settings"]["evaluator"] == "opengl"
     assert report(tmp_path)["evaluators"] == {"native": 1}
     assert told_once(tmp_path) == no_driver
     fit(read_take(small_take), replace(request, resume=True), notebook)
-    assert notebook.notes[-1].startswith("all frames in")
+    assert notebook.told[-1].startswith("all frames in")
 
 
 @pytest.mark.parametrize("progress", ["none", "bar", "json"])
