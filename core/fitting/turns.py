@@ -37,20 +37,20 @@ def turned(evaluator: Evaluator, pose: np.ndarray) -> np.ndarray:
     faces the other way with left and right exchanged, and the legs alone are. ``pose`` itself is
     none of them.
     """
-    body = evaluator.body
+    body, heading = evaluator.body, heading_dof(evaluator.body)
     legs = [part for part in body.parts if part.name in _LEGS]
     arms = [dof for part in body.parts if part.name in ARMS for dof in part.dofs]
     found = []
     for turn in _TURNS.tolist():
         start = pose.copy()
-        start[heading_dof(body)] += turn
+        start[heading] += turn
         for leg in legs if turn else ():
             start = _held(evaluator, pose, start, leg)
         resting = start.copy()
         resting[arms] = body.rest_pose[arms]
         found += [start, resting]
     about = _exchanged(body, pose, (*ARMS, *_LEGS))
-    about[heading_dof(body)] += np.pi if pose[heading_dof(body)] < 0 else -np.pi
+    about[heading] += np.pi if pose[heading] < 0 else -np.pi
     poses = clamped(body, np.stack([*found, about, _exchanged(body, pose, _LEGS)]))
     return poses[(poses != pose).any(axis=1)]
 
