@@ -14,9 +14,9 @@ import bpy
 import numpy as np
 
 from ...core.body.body import Body, DofKind
+from ...core.body.bones import bone_names
 from ...core.body.kinematics import joint_motions
 from ...core.motion.curves import key_slopes, quaternions
-from .armature import bone_names
 
 
 @dataclass(frozen=True, eq=False)

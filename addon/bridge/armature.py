@@ -13,25 +13,13 @@ import numpy as np
 from mathutils import Vector
 
 from ...core.body.body import Body
+from ...core.body.bones import bone_names
 from ...core.body.kinematics import rest_joints
 
 END_LENGTH = 0.02
 """Metres, the bone of an end; Blender silently removes bones of no length."""
 
-_SIDES = {"left_": ".L", "right_": ".R"}
 _FRONT, _UP = np.array([0.0, -1.0, 0.0]), np.array([0.0, 0.0, 1.0])
-
-
-def bone_names(body: Body) -> tuple[str, ...]:
-    """J names in Blender's style: ``left_elbow`` becomes ``elbow.L``."""
-    return tuple(_bone_name(name) for name in body.joint_names)
-
-
-def _bone_name(joint: str) -> str:
-    for prefix, suffix in _SIDES.items():
-        if joint.startswith(prefix):
-            return joint.removeprefix(prefix) + suffix
-    return joint
 
 
 def add_armature(

@@ -4,8 +4,8 @@ import bpy
 import numpy as np
 
 from ...core.body.body import Body, Skin, Surface
+from ...core.body.bones import bone_names
 from ...core.body.kinematics import rest_joints
-from .armature import bone_names
 
 
 def add_mesh(body: Body, surface: Surface, armature: bpy.types.Object) -> bpy.types.Object:

@@ -9,11 +9,21 @@ LIMB_NAMES = ("torso", "left_arm", "right_arm", "left_leg", "right_leg")
 
 @lru_cache(maxsize=16)
 def limb_segments(body: Body) -> tuple[tuple[int, ...], ...]:
-    """The segments of each of `LIMB_NAMES`; the torso holds all that no limb moves."""
-    limbs = {part.name: part.segments for part in body.parts if part.role == "limb"}
+    """The segments of each of `LIMB_NAMES`; the torso holds all that no limb moves.
+
+    Where a body has no such part, as the legs of ``nine_joint``, it is what carries their points.
+    """
+    limbs = {name: _carriers(body, name) for name in LIMB_NAMES[1:]}
+    limbs |= {part.name: part.segments for part in body.parts if part.role == "limb"}
     moved = {segment for segments in limbs.values() for segment in segments}
     torso = tuple(s for s in range(len(body.segment_names)) if s not in moved)
     return (torso, *(limbs[name] for name in LIMB_NAMES[1:]))
+
+
+def _carriers(body: Body, limb: str) -> tuple[int, ...]:
+    """The segments whose joints carry the limb's points."""
+    joints = {int(body.point_joints[point]) for point in points_of(limb)}
+    return tuple(s for s, joint in enumerate(body.segment_joints) if int(joint) in joints)
 
 
 def limb_of(point: str) -> int:

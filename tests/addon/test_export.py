@@ -11,8 +11,8 @@ import cv2
 import numpy as np
 import pybvh
 import pytest
-from bl_ext.user_default.silhouette_mocap.addon.bridge.armature import bone_names
 from bl_ext.user_default.silhouette_mocap.addon.export import export_take
+from bl_ext.user_default.silhouette_mocap.core.body.bones import bone_names
 from bl_ext.user_default.silhouette_mocap.core.body.templates import template
 from bl_ext.user_default.silhouette_mocap.core.cameras.camera import Camera
 from bl_ext.user_default.silhouette_mocap.core.errors import MocapError

@@ -4,6 +4,8 @@ from collections.abc import Callable
 
 from ...errors import MocapError
 from ..body import Body
+from .eleven_segment import eleven_segment
+from .nine_joint import nine_joint
 from .performer import performer
 from .proportions import Proportions
 from .sixteen_segment import sixteen_segment
@@ -11,6 +13,8 @@ from .sixteen_segment import sixteen_segment
 TEMPLATES: dict[str, Callable[..., Body]] = {
     "performer": performer,
     "sixteen_segment": sixteen_segment,
+    "eleven_segment": eleven_segment,
+    "nine_joint": nine_joint,
 }
 
 

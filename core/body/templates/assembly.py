@@ -1,6 +1,6 @@
 """From descriptions of joints, segments and parts to a `Body`."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -22,7 +22,7 @@ class Segment:
 
 @dataclass(frozen=True)
 class Search:
-    """A part to be, by the joints whose DOFs it searches; ``grid`` is a subset of ``joints``."""
+    """A part to be, by the joints whose DOFs it searches; ``grid`` names joints or DOFs of them."""
 
     name: str
     role: str
@@ -32,12 +32,16 @@ class Search:
 
 @dataclass(frozen=True, eq=False)
 class Plan:
-    """A template: centre and left; what is left is built on the right as well."""
+    """A template: centre and left; what is left is built on the right as well.
+
+    ``carriers`` names the joints of points that have none of their own.
+    """
 
     name: str
     joints: tuple[Joint, ...]
     segments: tuple[Segment, ...]
     searches: tuple[Search, ...]
+    carriers: dict[str, str] = field(default_factory=dict)
 
 
 def assembled(plan: Plan, proportions: Proportions, levels: tuple[Level, ...]) -> Body:
@@ -51,8 +55,9 @@ def assembled(plan: Plan, proportions: Proportions, levels: tuple[Level, ...]) -
     origins = np.array([places[name] for name in names])
     offsets = origins - np.where(np.array(parents)[:, None] < 0, 0, origins[parents])
     dofs = _dofs(joints)
-    carriers = np.array([names.index(segment.joint) for segment in segments])
-    point_joints = [_carrier(point, names) for point in POINT_NAMES]
+    segment_joints = np.array([names.index(segment.joint) for segment in segments])
+    carriers = plan.carriers | {on_the_right(p): on_the_right(j) for p, j in plan.carriers.items()}
+    point_joints = [names.index(carriers.get(point, point)) for point in POINT_NAMES]
     point_places = np.array([places["skull" if p == "head" else p] for p in POINT_NAMES])
     return Body(
         name=plan.name,
@@ -65,14 +70,14 @@ def assembled(plan: Plan, proportions: Proportions, levels: tuple[Level, ...]) -
             i: np.round(joint.cone, 9) for i, joint in enumerate(joints) if joint.cone is not None
         },
         segment_names=tuple(segment.name for segment in segments),
-        segment_joints=carriers,
+        segment_joints=segment_joints,
         surfaces=tuple(
             surface(proportions, tuple((s.name, s.joint, s.pieces) for s in segments), level)
             for level in levels
         ),
         point_joints=np.array(point_joints),
         point_offsets=point_places - origins[point_joints],
-        parts=tuple(_part(search, names, parents, dofs, carriers) for search in searches),
+        parts=tuple(_part(search, names, parents, dofs, segment_joints) for search in searches),
     )
 
 
@@ -103,11 +108,6 @@ def _both_places(places: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     }
 
 
-def _carrier(point: str, names: tuple[str, ...]) -> int:
-    """The joint that carries a point; the head moves with the neck where it has no own joint."""
-    return names.index(point if point in names else "neck")
-
-
 def _dofs(joints: tuple[Joint, ...]) -> Dofs:
     rows = [(index, row) for index, joint in enumerate(joints) for row in joint.rows]
     units = [1.0 if row.kind == DofKind.TRANSLATION else np.pi / 180 for _, row in rows]
@@ -127,10 +127,15 @@ def _dofs(joints: tuple[Joint, ...]) -> Dofs:
 
 
 def _part(
-    search: Search, names: tuple[str, ...], parents: list[int], dofs: Dofs, carriers: np.ndarray
+    search: Search,
+    names: tuple[str, ...],
+    parents: list[int],
+    dofs: Dofs,
+    segment_joints: np.ndarray,
 ) -> Part:
     searched = [names.index(name) for name in search.joints]
-    gridded = [names.index(name) for name in search.grid]
+    named = zip((names[joint] for joint in dofs.joints), dofs.names, strict=True)
+    gridded = [not set(search.grid).isdisjoint(either) for either in named]
     moving = set(searched)
     for joint, parent in enumerate(parents):
         if parent in moving:
@@ -139,6 +144,6 @@ def _part(
         search.name,
         search.role,
         dofs=tuple(int(row) for row in np.flatnonzero(np.isin(dofs.joints, searched))),
-        grid=tuple(int(row) for row in np.flatnonzero(np.isin(dofs.joints, gridded))),
-        segments=tuple(int(s) for s in np.flatnonzero(np.isin(carriers, list(moving)))),
+        grid=tuple(int(row) for row in np.flatnonzero(gridded)),
+        segments=tuple(int(s) for s in np.flatnonzero(np.isin(segment_joints, list(moving)))),
     )

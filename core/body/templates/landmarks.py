@@ -48,6 +48,8 @@ def landmarks(p: Proportions) -> dict[str, np.ndarray]:
     skull = head + p.skull * _leaning(-0.30)
     return {
         "root": root,
+        "back": root,
+        "virtual_foot": np.zeros(3),
         "waist": waist,
         "chest": chest,
         "neck": neck,

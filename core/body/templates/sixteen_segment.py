@@ -34,7 +34,7 @@ def sixteen_segment(
     proportions: Proportions | None = None, levels: tuple[Level, ...] = LEVELS
 ) -> Body:
     """The body ``sixteen_segment``; None stands for the average adult of 1.75 m."""
-    plan = Plan("sixteen_segment", _joints(), SEGMENTS, SEARCHES)
+    plan = Plan("sixteen_segment", _joints(), SEGMENTS, SEARCHES, {"head": "neck"})
     return assembled(plan, proportions or Proportions(), levels)
 
 

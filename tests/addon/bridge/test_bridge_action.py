@@ -4,9 +4,10 @@ import bpy
 import numpy as np
 import pytest
 from bl_ext.user_default.silhouette_mocap.addon.bridge.action import Keys, add_action
-from bl_ext.user_default.silhouette_mocap.addon.bridge.armature import add_armature, bone_names
+from bl_ext.user_default.silhouette_mocap.addon.bridge.armature import add_armature
 from bl_ext.user_default.silhouette_mocap.addon.bridge.space import add_capture_space
 from bl_ext.user_default.silhouette_mocap.addon.bridge.timing import scene_frames, set_rate
+from bl_ext.user_default.silhouette_mocap.core.body.bones import bone_names
 from bl_ext.user_default.silhouette_mocap.core.body.kinematics import chained, joint_motions
 from bl_ext.user_default.silhouette_mocap.core.body.templates import template
 from bl_ext.user_default.silhouette_mocap.core.motion.curves import followed

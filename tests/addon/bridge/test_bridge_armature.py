@@ -3,9 +3,10 @@ from dataclasses import replace
 import bpy
 import numpy as np
 import pytest
-from bl_ext.user_default.silhouette_mocap.addon.bridge.armature import add_armature, bone_names
+from bl_ext.user_default.silhouette_mocap.addon.bridge.armature import add_armature
 from bl_ext.user_default.silhouette_mocap.addon.bridge.mesh import add_mesh
 from bl_ext.user_default.silhouette_mocap.addon.bridge.space import add_capture_space
+from bl_ext.user_default.silhouette_mocap.core.body.bones import bone_names
 from bl_ext.user_default.silhouette_mocap.core.body.kinematics import world_vertices
 from bl_ext.user_default.silhouette_mocap.core.body.templates import template
 
@@ -66,7 +67,7 @@ def test_mode_selection_and_active_object_stay_as_they_were(small_body):
     assert len(bpy.data.scenes) == 1
 
 
-@pytest.mark.parametrize("name", ["performer", "sixteen_segment"])
+@pytest.mark.parametrize("name", ["performer", "sixteen_segment", "eleven_segment", "nine_joint"])
 def test_every_vertex_of_the_mesh_follows_its_bone(name):
     body = template(name)
     armature = placed(body)

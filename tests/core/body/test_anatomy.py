@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from silhouette_mocap.core.body.body import POINT_NAMES
 from silhouette_mocap.core.body.kinematics import points, rest_height, within_limits, world_vertices
-from silhouette_mocap.core.body.templates.landmarks import PALM
+from silhouette_mocap.core.body.templates.landmarks import PALM, UP
 from silhouette_mocap.core.body.templates.skeleton import hanging_cone, swing_axes
 
 STATURE = 1.75
@@ -37,9 +37,9 @@ def tip(body, segment, pose, direction):
 
 
 @pytest.mark.parametrize("side", ["left", "right"])
-def test_arm_and_leg_move_the_way_their_dofs_are_called(body, side):
+def test_arms_move_the_way_their_dofs_are_called(body, side):
     out = 1 if side == "left" else -1
-    wrist, knee, ankle = (f"{side}_{name}" for name in ("wrist", "knee", "ankle"))
+    wrist = f"{side}_wrist"
 
     def moved(point, **degrees):
         return shift(body, point, **{f"{side}_{name}": v for name, v in degrees.items()})
@@ -52,6 +52,17 @@ def test_arm_and_leg_move_the_way_their_dofs_are_called(body, side):
     bent = place(body, posed(body, **{f"{side}_elbow_flexion": 90}), wrist)
     turned = posed(body, **{f"{side}_elbow_flexion": 90, f"{side}_shoulder_twist": 40})
     assert (place(body, turned, wrist) - bent)[0] * out < -0.05
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+@pytest.mark.parametrize("name", ["performer", "sixteen_segment", "eleven_segment"])
+def test_legs_move_the_way_their_dofs_are_called(bodies, name, side):
+    body, out = bodies[name], 1 if side == "left" else -1
+    knee, ankle = f"{side}_knee", f"{side}_ankle"
+
+    def moved(point, **degrees):
+        return shift(body, point, **{f"{side}_{name}": v for name, v in degrees.items()})
+
     assert moved(knee, hip_flexion=60)[1] < -0.3
     assert moved(knee, hip_flexion=60)[2] > 0.15
     assert moved(knee, hip_abduction=30)[0] * out > 0.15
@@ -91,6 +102,25 @@ def test_hands_and_feet_move_the_way_their_dofs_are_called(performer_body, side)
     assert moved("foot", thumb, ankle_flexion=20)[2] > 0.02
     assert moved("foot", -out * (1, 0, 0), ankle_inversion=20)[2] > 0.005
     assert moved("toes", thumb, toes_extension=30)[2] > 0.02
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_joints_of_three_angles_move_the_way_their_dofs_are_called(bodies, side):
+    body, out = bodies["eleven_segment"], np.array([1 if side == "left" else -1, 1, 1])
+    out_down, front = out * (1, 0, -1), np.array([0.0, -1.0, 0.0])
+
+    def moved(segment, direction, **degrees):
+        pose = posed(body, **{f"{side}_{name}": v for name, v in degrees.items()})
+        return tip(body, f"{side}_{segment}", pose, direction)
+
+    assert moved("lower_arm", out_down, elbow_lateral=5) @ (out * (1, 0, 1)) > 0.02
+    assert moved("lower_arm", front, forearm_twist=60) @ (out * PALM) > 0.02
+    assert (moved("lower_leg", -UP, knee_lateral=5) * out)[0] > 0.02
+    assert (moved("lower_leg", front, knee_twist=20) * out)[0] < -0.02
+    assert shift(body, "head", waist_lateral=20)[0] > 0.1
+    assert shift(body, "left_shoulder", waist_twist=20)[1] > 0.04
+    twisted = posed(bodies["nine_joint"], **{f"{side}_elbow_twist": 5})
+    assert tip(bodies["nine_joint"], f"{side}_hand", twisted, front) @ (out * PALM) > 0.002
 
 
 def test_the_root_turns_left_and_tilts_left_and_forwards(body):

@@ -117,5 +117,5 @@ def test_clamping_keeps_what_is_allowed_and_makes_the_rest_allowed(body):
 
 
 def test_a_joint_without_a_swing_has_no_swing_rows(body):
-    with pytest.raises(ValueError, match="expected a swing in joint root"):
+    with pytest.raises(ValueError, match=f"expected a swing in joint {body.joint_names[0]}"):
         swing_rows(body, 0)

@@ -31,7 +31,8 @@ def pictures(body):
         "left_knee_flexion": 90,
         "right_knee_flexion": 30,
     }.items():
-        bent[body.dofs.names.index(name)] = np.radians(degrees)
+        if name in body.dofs.names:
+            bent[body.dofs.names.index(name)] = np.radians(degrees)
     return [
         [silhouette(body, pose, level, heading) for level in (0, -1)]
         for pose in (body.rest_pose, bent)

@@ -12,6 +12,7 @@ from silhouette_mocap.core.body.kinematics import (
     world_vertices,
 )
 from silhouette_mocap.core.body.templates import template
+from silhouette_mocap.core.body.templates.nine_joint import measures
 from silhouette_mocap.core.errors import MocapError
 
 MIRROR = np.array([-1.0, 1.0, 1.0])
@@ -64,8 +65,56 @@ def test_the_sixteen_segments_have_35_dofs_and_17_joints(bodies):
     assert (len(body.dofs), len(body.joint_names), len(body.segment_names)) == (35, 17, 16)
 
 
+def dofs_by_joint(body):
+    return {name: (body.dofs.joints == joint).sum() for joint, name in enumerate(body.joint_names)}
+
+
+def test_the_eleven_segments_have_ten_joints_of_three_angles_and_a_root_of_six(bodies):
+    body = bodies["eleven_segment"]
+    assert len(body.segment_names) == 11
+    root, *others = dofs_by_joint(body).values()
+    assert (root, others) == (6, [3] * 10)
+    angles = body.dofs.kinds[body.dofs.joints > 0]
+    assert (angles == DofKind.HINGE).all() and not body.cones
+
+
+def test_the_nine_joints_have_three_dofs_and_the_virtual_foot_moves_besides(bodies):
+    body = bodies["nine_joint"]
+    count = dofs_by_joint(body)
+    assert (count.pop("virtual_foot"), set(count.values()), len(count)) == (6, {3}, 8)
+    leg = body.surfaces[0].vertices[slice(*body.surfaces[0].vertex_starts[:2])]
+    assert body.segment_names[0] == "virtual_leg"
+    assert leg[:, 2].min() == pytest.approx(0, abs=1e-6) and np.ptp(leg[:, 0]) > 0.3
+
+
+def test_points_without_a_joint_of_their_own_lie_where_they_do_in_the_performer(bodies):
+    expected = points(bodies["performer"], bodies["performer"].rest_pose[None])
+    for body in bodies.values():
+        np.testing.assert_allclose(points(body, body.rest_pose[None]), expected, atol=1e-12)
+    lower = dict(zip(POINT_NAMES, bodies["eleven_segment"].point_joints, strict=True))
+    names = bodies["eleven_segment"].joint_names
+    assert names[lower["left_wrist"]] == "left_elbow" and names[lower["head"]] == "neck"
+    assert names[lower["right_ankle"]] == "right_knee"
+
+
+def test_the_measures_of_nine_joints_are_distances_of_the_14_points(bodies):
+    body = bodies["nine_joint"]
+    at = dict(zip(POINT_NAMES, points(body, body.rest_pose[None])[0], strict=True))
+    back = (at["left_hip"] + at["right_hip"]) / 2
+    foot = (at["left_ankle"] + at["right_ankle"]) / 2 * (1, 1, 0)
+    expected = {
+        "forearm": at["left_elbow"] - at["left_wrist"],
+        "arm": at["right_elbow"] - at["right_shoulder"],
+        "trunk": back - at["neck"],
+        "upper back": back - at["left_shoulder"],
+        "virtual leg": back - foot,
+    }
+    lengths = {name: pytest.approx(np.linalg.norm(line)) for name, line in expected.items()}
+    assert measures(body) == lengths
+
+
 def test_an_unknown_template_is_told_with_the_known_ones():
-    with pytest.raises(MocapError, match="'twins'; choose one of performer, sixteen_segment"):
+    with pytest.raises(MocapError, match="'twins'; choose one of eleven_segment, nine_joint, p"):
         template("twins")
 
 
@@ -124,7 +173,8 @@ def test_swing_axes_are_perpendicular_to_each_other_and_twists_lie_along_the_bon
     for joint in body.cones:
         first, second = body.dofs.axes[list(swing_rows(body, joint))]
         assert abs(first @ second) < 1e-12
-    for name in ("left_shoulder_twist", "right_hip_twist", "left_forearm_twist"):
+    twists = {"left_shoulder_twist", "right_hip_twist", "left_forearm_twist", "left_knee_twist"}
+    for name in twists.intersection(body.dofs.names):
         row = body.dofs.names.index(name)
         tail = body.tails[body.dofs.joints[row]]
         assert abs(body.dofs.axes[row] @ tail) == pytest.approx(np.linalg.norm(tail))
@@ -157,6 +207,8 @@ def test_parts_come_in_the_order_of_the_search(bodies):
     names = {key: [part.name for part in body.parts] for key, body in bodies.items()}
     assert names["performer"] == ["torso", "spine", *limbs, *ends]
     assert names["sixteen_segment"] == ["torso", *limbs, *ends]
+    assert names["eleven_segment"] == ["torso", "waist", *limbs, "head"]
+    assert names["nine_joint"] == ["torso", "back", *limbs[:2], *ends[:3]]
 
 
 def test_parts_share_no_dofs_and_cover_all(body):

@@ -33,7 +33,7 @@ def bent(body):
     )
 
 
-@pytest.mark.parametrize("name", ["performer", "sixteen_segment"])
+@pytest.mark.parametrize("name", ["performer", "sixteen_segment", "eleven_segment"])
 def test_a_pose_nearby_is_found_to_a_fraction_of_a_pixel(name):
     body, cameras = small_body(name), small_studio()
     truth = bent(body)
@@ -46,6 +46,17 @@ def test_a_pose_nearby_is_found_to_a_fraction_of_a_pixel(name):
         for a, b in zip(pixels, filmed(body, cameras, truth), strict=True)
     )
     assert fit.energy == differ
+
+
+def test_a_body_without_legs_of_its_own_is_tracked_standing():
+    body, cameras = small_body("nine_joint"), small_studio()
+    truth = dof_values(
+        body, root_x=0.04, root_yaw=0.1, left_shoulder_abduction=0.4, right_elbow_flexion=0.5
+    )
+    tracker = ContourTracker(body, cameras, evaluator)
+    past = replace(Past.still(body.rest_pose), usual=np.zeros(5))
+    fit = tracker.fit(filmed(body, cameras, truth), past)
+    assert mean_error(body, fit.pose, truth) < 0.4 * PIXEL_M
 
 
 def test_a_limb_that_jumps_is_sought_and_found():

@@ -42,7 +42,7 @@ class Counting:
         return self.inner.energies(weights, poses, segments)
 
 
-@pytest.mark.parametrize("name", ["performer", "sixteen_segment"])
+@pytest.mark.parametrize("name", ["performer", "sixteen_segment", "eleven_segment"])
 def test_a_step_is_followed_to_a_fraction_of_a_pixel(name):
     body, cameras = small_body(name), small_studio()
     truth = dof_values(body, **STEP)

@@ -48,10 +48,18 @@ def test_xor_and_iou_are_counted_where_something_was_observed():
 
 
 def test_every_segment_belongs_to_one_limb():
-    for name in ("performer", "sixteen_segment"):
+    for name in ("performer", "sixteen_segment", "eleven_segment"):
         body = small_body(name)
         held = sorted(s for segments in limb_segments(body) for s in segments)
         assert held == list(range(len(body.segment_names)))
+
+
+def test_both_legs_are_the_one_segment_that_carries_them_where_a_body_has_no_others():
+    body = small_body("nine_joint")
+    torso, left_arm, _, *legs = limb_segments(body)
+    names = [[body.segment_names[s] for s in segments] for segments in (*legs, torso, left_arm)]
+    assert names[:2] == [["virtual_leg"]] * 2
+    assert names[2:] == [["trunk", "head"], ["left_arm", "left_forearm", "left_hand"]]
 
 
 def test_the_contour_of_a_grown_square_runs_round_it():
