@@ -177,9 +177,10 @@ class Body:
         segment_names: S names.
         segment_joints: (S,) int32, the joint that carries each segment.
         surfaces: levels of detail, coarse first; all have S segments.
-        point_joints: (14,) int32, the joint that carries each of `POINT_NAMES`.
-        point_offsets: (14, 3) metres, in that joint's space.
+        point_joints: (P,) int32, the joint that carries each of the points.
+        point_offsets: (P, 3) metres, in that joint's space.
         parts: pieces for part-wise search.
+        point_names: P names; `POINT_NAMES` for people, others for what has other joints.
     """
 
     name: str
@@ -195,10 +196,11 @@ class Body:
     point_joints: np.ndarray
     point_offsets: np.ndarray
     parts: tuple[Part, ...]
+    point_names: tuple[str, ...] = POINT_NAMES
 
     def __post_init__(self):
         joints, segments = len(self.joint_names), len(self.segment_names)
-        points = len(POINT_NAMES)
+        points = len(self.point_names)
         set_ = object.__setattr__
         set_(self, "parents", frozen_array(self.parents, (joints,), "parents", np.int32))
         for name, count in (("offsets", joints), ("tails", joints), ("point_offsets", points)):

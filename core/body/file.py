@@ -11,7 +11,7 @@ import numpy as np
 
 from ..errors import MocapError
 from ..geometry.archive import read_archive, write_archive
-from .body import Body, Dofs, Part, Skin, Surface
+from .body import POINT_NAMES, Body, Dofs, Part, Skin, Surface
 
 VERSION = 1
 
@@ -39,6 +39,7 @@ def _packed(body: Body) -> dict[str, np.ndarray]:
         "cone_starts": _starts(cones),
         "cone_corners": np.concatenate([*cones, np.zeros((0, 2))]),
         "levels": len(body.surfaces),
+        "point_names": body.point_names,
         "part_names": [part.name for part in body.parts],
         "part_roles": [part.role for part in body.parts],
     }
@@ -97,6 +98,8 @@ def _unpacked(stored: dict[str, np.ndarray]) -> Body:
         segment_names=_texts(stored["segment_names"]),
         surfaces=tuple(_surface(stored, level) for level in range(int(stored["levels"]))),
         parts=_parts(stored),
+        # files of old have a person's
+        point_names=_texts(stored.get("point_names", np.array(POINT_NAMES))),
         **{name: stored[name] for name in ARRAYS},
     )
 

@@ -71,12 +71,12 @@ def joint_positions(body: Body, poses: np.ndarray) -> np.ndarray:
 
 
 def points(body: Body, poses: np.ndarray) -> np.ndarray:
-    """(N, 14, 3) world metres of `POINT_NAMES` in poses (N, D)."""
+    """(N, P, 3) world metres of the body's points in poses (N, D)."""
     return carried_points(body, joint_transforms(body, poses))
 
 
 def carried_points(body: Body, transforms: np.ndarray) -> np.ndarray:
-    """(N, 14, 3) world metres of `POINT_NAMES`, of world_from_joint (N, J, 3, 4)."""
+    """(N, P, 3) world metres of the body's points, of world_from_joint (N, J, 3, 4)."""
     transforms = transforms[:, body.point_joints]
     return (transforms[..., :3] @ body.point_offsets[..., None])[..., 0] + transforms[..., 3]
 

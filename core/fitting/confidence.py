@@ -7,12 +7,12 @@ and disturbed: points beyond 50 mm against the rest, those beyond 150 mm counted
 point that is lost and not told costs more than one that is doubted in vain.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from ..body.body import POINT_NAMES
-from .limbs import limb_of
+from .limbs import POINT_LIMBS
 
 WEIGHTS = np.array([1.608, -6.152, -0.587, -7.205, -9.745])
 """Of 1, ln(spread / 10 mm), ln(residual / 10 mm), share unexplained, and the root of the lumps, m^2
@@ -26,13 +26,13 @@ _UNSEEN_M = 0.3
 
 @dataclass(frozen=True, eq=False)
 class LimbSigns:
-    """Signs of error of each of `LIMB_NAMES`.
+    """Signs of error of each of L limbs.
 
     Attributes:
-        residual: (5,) m, mean distance of its outline to the contours; NaN where no view shows it.
-        lumps: (5,) m^2 per view of `Lumps` that it may explain.
-        unexplained: (5,) share of what it covers that is background.
-        usual: (5,) lumps that the frames before had usually; infinite where there were none.
+        residual: (L,) m, mean distance of its outline to the contours; NaN where no view shows it.
+        lumps: (L,) m^2 per view of `Lumps` that it may explain.
+        unexplained: (L,) share of what it covers that is background.
+        usual: (L,) lumps that the frames before had usually; infinite where there were none.
     """
 
     residual: np.ndarray
@@ -41,9 +41,17 @@ class LimbSigns:
     usual: np.ndarray
 
 
-def features(point_spreads: np.ndarray, signs: LimbSigns) -> np.ndarray:
-    """(14, 5) what `WEIGHTS` weigh; ``point_spreads`` (14,) m are those of `Observability`."""
-    limbs = [limb_of(name) for name in POINT_NAMES]
+def features(
+    point_spreads: np.ndarray, signs: LimbSigns, point_limbs: Sequence[int] = POINT_LIMBS
+) -> np.ndarray:
+    """(P, 5) what `WEIGHTS` weigh.
+
+    Args:
+        point_spreads: (P,) m, those of `Observability`.
+        signs: of the limbs.
+        point_limbs: (P,) the limb that moves each point; a person's by default.
+    """
+    limbs = list(point_limbs)
     residual = np.maximum(np.nan_to_num(signs.residual, nan=_UNSEEN_M), _LEAST_M)
     spread = np.log(np.maximum(point_spreads, _LEAST_M) / 0.01)
     columns = (
@@ -56,6 +64,8 @@ def features(point_spreads: np.ndarray, signs: LimbSigns) -> np.ndarray:
     return np.stack(columns, axis=1)
 
 
-def point_confidence(point_spreads: np.ndarray, signs: LimbSigns) -> np.ndarray:
-    """(14,) probability that each point is off by less than 50 mm, from `features`."""
-    return 1.0 / (1.0 + np.exp(-features(point_spreads, signs) @ WEIGHTS))
+def point_confidence(
+    point_spreads: np.ndarray, signs: LimbSigns, point_limbs: Sequence[int] = POINT_LIMBS
+) -> np.ndarray:
+    """(P,) probability that each point is off by less than 50 mm, from `features`."""
+    return 1.0 / (1.0 + np.exp(-features(point_spreads, signs, point_limbs) @ WEIGHTS))

@@ -21,7 +21,6 @@ from ..cameras.camera import Camera
 from ..silhouettes.silhouette import Silhouette
 from .contour_descent import Descent
 from .contour_search import ContourSearch, ContourSettings
-from .limbs import LIMB_NAMES
 from .lumps import dropped, unexplained
 from .recovery import restarts
 from .tracker import EvaluatorFactory, Past, PoseFit
@@ -126,7 +125,7 @@ def _recover_limbs(search: ContourSearch) -> None:
 
 
 def _doubts(search: ContourSearch) -> np.ndarray:
-    """(5,) bool, whether there is more than usual that each of `LIMB_NAMES` may explain."""
+    """(L,) bool, whether there is more than usual that each of `limb_names` may explain."""
     return search.lumps(search.pose).sum(axis=0) > _USUAL * search.past.usual + _LITTLE_M2
 
 
@@ -184,7 +183,7 @@ def _recover_heading(search: ContourSearch) -> None:
     lumps = search.lumps(own).sum(axis=0)
     if not unexplained(lumps, search.past.usual):
         return
-    arms = [(limb, part) for limb, part in search.sought if LIMB_NAMES[limb] in ARMS]
+    arms = [(limb, part) for limb, part in search.sought if part.name in ARMS]
     starts = turned(search.evaluator, own)
     found = sorted((_sought_from(search, start, arms) for start in starts), key=itemgetter(0))
     found += [_sought_from(search, pose, search.sought) for _, pose in found[:_HEADINGS]]
@@ -201,6 +200,6 @@ def _sought_from(
     """Cost and pose (D,) where a start (D,) leads to, some parts sought, the arms everywhere."""
     search.expect(start)
     search.take(search.descended(start, start, 1.0)[None])
-    for limb, part in sought:
-        search.seek(part, LIMB_NAMES[limb] in ARMS)
+    for _, part in sought:
+        search.seek(part, part.name in ARMS)
     return float(search.costs(search.pose[None])[0]), search.pose

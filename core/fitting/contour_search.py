@@ -19,7 +19,7 @@ from ..silhouettes.silhouette import Silhouette
 from .contour_descent import Descent, DescentSettings
 from .contour_targets import ContourTargets
 from .limb_search import LimbCost, LimbSettings, better_limbs, limbs_elsewhere
-from .limbs import LIMB_NAMES, limb_segments
+from .limbs import limb_names, limb_segments
 from .lumps import Lumps
 from .part_search import rest_prior
 from .scores import metres_at
@@ -74,7 +74,7 @@ class ContourSearch:
         apart_px: (V,) px that differ there.
         trust: (V,) how far the views are trusted.
         last: (D,) as in `Past`, within the limits; so are predicted and trusted.
-        sought: each limb, and the head, with the index in `LIMB_NAMES` that its lumps go by.
+        sought: each limb, and the head, with the index in `limb_names` that its lumps go by.
     """
 
     def __init__(
@@ -90,7 +90,7 @@ class ContourSearch:
             self.body, np.stack([past.last, past.predicted, past.trusted])
         )
         self.sought = [
-            (LIMB_NAMES.index(part.name) if part.role == "limb" else 0, part)
+            (limb_names(self.body).index(part.name) if part.role == "limb" else 0, part)
             for part in self.body.parts
             if part.role == "limb" or part.name == "head"
         ]
@@ -180,7 +180,7 @@ class ContourSearch:
         self.go_on_from(list(found))
 
     def lumps(self, pose: np.ndarray) -> np.ndarray:
-        """(2, 5) `Lumps.of_limbs` of `LIMB_NAMES` in a pose (D,)."""
+        """(2, L) `Lumps.of_limbs` of `limb_names` in a pose (D,)."""
         lumps = Lumps.of(self.evaluator.silhouettes(pose), self.silhouettes, self.metres)
         return lumps.of_limbs(self.evaluator, pose, limb_segments(self.body), self.trust)
 

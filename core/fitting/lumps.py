@@ -101,7 +101,7 @@ class Lumps:
 
 
 def unexplained(lumps: np.ndarray, usual: np.ndarray) -> bool:
-    """Whether a pose leaves more in ``lumps`` (5,) than is ``usual`` (5,), for any limb."""
+    """Whether a pose leaves more in ``lumps`` (L,) than is ``usual`` (L,), for any limb."""
     return bool((lumps > _UNUSUAL * usual + _MUCH_M2).any())
 
 

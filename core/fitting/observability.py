@@ -36,7 +36,7 @@ class Observability:
 
     Attributes:
         dof_spreads: (D,) standard deviation of each DOF, rad or m.
-        point_spreads: (14,) of the place of each of `POINT_NAMES`, m.
+        point_spreads: (P,) of the place of each of the body's points, m.
     """
 
     dof_spreads: np.ndarray
@@ -80,7 +80,7 @@ def _twists(body: Body) -> Twists:
 
 
 def _point_moves(body: Body, transforms: np.ndarray, twists: np.ndarray) -> np.ndarray:
-    """(14, 3, D) change of the points' places, m, with each DOF; of `Twists.at`."""
+    """(P, 3, D) change of the points' places, m, with each DOF; of `Twists.at`."""
     places = carried_points(body, transforms[None])[0]
     carried = twists[body.point_joints]
     return np.moveaxis(carried[..., :3] + np.cross(carried[..., 3:], places[:, None]), 1, 2)

@@ -7,7 +7,7 @@ import numpy as np
 from ..energy.evaluator import Evaluator
 from ..silhouettes.silhouette import Silhouette
 from .confidence import LimbSigns, point_confidence
-from .limbs import LIMB_NAMES, limb_segments
+from .limbs import limb_segments, point_limbs
 from .lumps import Lumps
 from .observability import Observability
 from .part_search import metres_per_pixel
@@ -25,15 +25,15 @@ class FrameScores:
         xor_px: (V,) px that differ between observed and rendered silhouette.
         iou: (V,) intersection over union; NaN where both are empty.
         contour_px: median distance from the rendered contours to the observed ones.
-        limb_residual: (5,) mean distance of each of `LIMB_NAMES`' own contour to the observed one,
+        limb_residual: (L,) mean distance of each of `limb_names`' own contour to the observed one,
             px; NaN where no view shows any of it.
-        unexplained: (5,) share of what each of `LIMB_NAMES` covers that the footage shows as
+        unexplained: (L,) share of what each of `limb_names` covers that the footage shows as
             background, mean over views by weight; 1 where no view shows any of it.
         view_weights: (V,) how far each view is trusted, see `view_weights`.
-        lumps: (5,) m^2 of `Lumps` that each of `LIMB_NAMES` may explain, summed over views.
-        point_spreads: (14,) m, `Observability.point_spreads`.
+        lumps: (L,) m^2 of `Lumps` that each of `limb_names` may explain, summed over views.
+        point_spreads: (P,) m, `Observability.point_spreads`.
         dof_spreads: (D,) rad or m, `Observability.dof_spreads`.
-        confidence: (14,) see `point_confidence`.
+        confidence: (P,) see `point_confidence`.
         lost: whether any limb's px are explained in less than 60 % of the views (SPEC §8), which
             count by their weights.
     """
@@ -59,28 +59,30 @@ def frame_scores(
 ) -> FrameScores:
     """Scores of ``pose`` (D,) against the V silhouettes.
 
-    ``usual`` (5,) are the `FrameScores.lumps` that other frames have usually; None where there are
+    ``usual`` (L,) are the `FrameScores.lumps` that other frames have usually; None where there are
     no others.
     """
     rendered = evaluator.silhouettes(pose)
     sights = sights_of(evaluator, pose, rendered, silhouettes)
+    limbs = limb_segments(evaluator.body)
+    sets = sets_with_limbs(len(limbs))
     px = np.array([sight.counts() for sight in sights])
     union = px.sum(axis=(1, 2)) - px[:, BACKGROUND, 0]
     xor = px[:, BACKGROUND, 1:].sum(axis=1) + px[:, FOREGROUND, 0]
     weights = view_weights(xor, 2 * union - xor)
     with np.errstate(invalid="ignore", divide="ignore"):
         iou = np.where(union > 0, 1.0 - xor / union, np.nan)
-    explained, most = _explained(px @ sets_with_limbs(), weights)
+    explained, most = _explained(px @ sets, weights)
     contours = [sight.contour() for sight in sights]
     distances = np.concatenate([contour[0] for contour in contours], dtype=float)
-    own = sets_with_limbs()[np.concatenate([contour[1] for contour in contours])]
+    own = sets[np.concatenate([contour[1] for contour in contours])]
     residual = np.array([_figure(np.mean, distances[chosen]) for chosen in own.T])
     metres = metres_at(evaluator, pose)
     found = Lumps.of(rendered, silhouettes, metres)
-    lumps = found.of_limbs(evaluator, pose, limb_segments(evaluator.body), weights).sum(axis=0)
+    lumps = found.of_limbs(evaluator, pose, limbs, weights).sum(axis=0)
     seen = Observability.of(evaluator, pose, silhouettes, weights, metres)
     trusted = max(float(weights.sum()), 1e-9)
-    usual = np.full(len(LIMB_NAMES), np.inf) if usual is None else usual
+    usual = np.full(len(limbs), np.inf) if usual is None else usual
     shares = (lumps / trusted, 1.0 - explained, usual / trusted)
     signs = LimbSigns(residual * metres.mean(), *shares)
     return FrameScores(
@@ -93,7 +95,7 @@ def frame_scores(
         lumps=lumps,
         point_spreads=seen.point_spreads,
         dof_spreads=seen.dof_spreads,
-        confidence=point_confidence(seen.point_spreads, signs),
+        confidence=point_confidence(seen.point_spreads, signs, point_limbs(evaluator.body)),
         lost=bool((most < _EXPLAINED_SHARE).any()),
     )
 
@@ -105,9 +107,9 @@ def metres_at(evaluator: Evaluator, pose: np.ndarray) -> np.ndarray:
 
 
 def _explained(px: np.ndarray, weights: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(5,) shares, by weights (V,), of limbs' px that are foreground, and of views where most are.
+    """(L,) shares, by weights (V,), of limbs' px that are foreground, and of views where most are.
 
-    Only views that show some of a limb count; both are 0 where none does. ``px`` (V, 2, 5) are
+    Only views that show some of a limb count; both are 0 where none does. ``px`` (V, 2, L) are
     those that each limb covers of background and of foreground.
     """
     drawn = px.sum(axis=1)

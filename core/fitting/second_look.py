@@ -135,7 +135,7 @@ class Course:
 
     @cached_property
     def usual(self) -> np.ndarray:
-        """(5,) `FrameScores.lumps` that the frames have usually."""
+        """(L,) `FrameScores.lumps` that the frames have usually."""
         return usual_lumps(self._signs[0])
 
     def doubtful(self) -> np.ndarray:
@@ -145,7 +145,7 @@ class Course:
 
     @cached_property
     def _signs(self) -> list[np.ndarray]:
-        """(T, 5) lumps, (T,) lost and (T,) locked, as they are before the second look."""
+        """(T, L) lumps, (T,) lost and (T,) locked, as they are before the second look."""
         return columns(
             self.fits,
             self.frames,
@@ -204,7 +204,7 @@ def _joined(tracker: Tracker, course: Course, stretch: Stretch, read: Read) -> I
 
 
 def _as_good_elsewhere(body: Body, poses: np.ndarray, costs: np.ndarray, k: int) -> np.ndarray:
-    """(K, 14) bool, points that poses (K, D) put elsewhere than the k-th, and cost no more."""
+    """(K, P) bool, points that poses (K, D) put elsewhere than the k-th, and cost no more."""
     places = points(body, poses)
     apart = np.linalg.norm(places - places[k], axis=2) > APART_M
     return apart & (np.abs(costs - costs[k]) < 1.0)[:, None]
@@ -302,14 +302,14 @@ def _path(
 
 
 def _moves(before: np.ndarray, after: np.ndarray, fps: float) -> np.ndarray:
-    """(K, L) costs of going from poses with points (K, 14, 3) to those with (L, 14, 3)."""
+    """(K, L) costs of going from poses with points (K, P, 3) to those with (L, P, 3)."""
     speeds = np.linalg.norm(after[None] - before[:, None], axis=3) * fps
     cost = ((speeds / _MPS) ** 2).sum(axis=2)
     return cost / (1.0 + cost / _LEAP)
 
 
 def _apart(body: Body, pose: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """(14,) how far the points of two poses (D,) are from each other, m."""
+    """(P,) how far the points of two poses (D,) are from each other, m."""
     places = points(body, np.stack([pose, other]))
     return np.linalg.norm(places[0] - places[1], axis=1)
 
@@ -322,7 +322,7 @@ def _candidates(body: Body, pose: np.ndarray, others: Sequence[np.ndarray]) -> n
         differing = [
             part
             for part in body.parts
-            if part.role == "limb" and apart[points_of(part.name)].max() >= AGREED_M
+            if part.role == "limb" and apart[points_of(body, part.name)].max() >= AGREED_M
         ]
         if len(differing) <= _MIXED:
             for swapped in [*product((False, True), repeat=len(differing))][1:-1]:

@@ -9,11 +9,9 @@ import numpy as np
 from ..energy.evaluator import Evaluator
 from ..geometry.boxes import box_round
 from ..silhouettes.silhouette import Silhouette
-from .limbs import LIMB_NAMES, limb_segments
+from .limbs import limb_segments
 
 BACKGROUND, FOREGROUND = 0, 1
-_KINDS = 1 << len(LIMB_NAMES)
-"""Sets of limbs that can cover a pixel, each a number of as many bits."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,18 +21,21 @@ class Sight:
     Attributes:
         silhouette: what was observed.
         box: rows and columns of what follows; beyond is nothing.
-        drawn: (H, W) uint8, a bit for each of `LIMB_NAMES` that the model shows there.
+        drawn: (H, W) unsigned, a bit for each of the L limbs that the model shows there.
+        kinds: 2^L, of sets of limbs that can cover a pixel, each a number of L bits.
     """
 
     silhouette: Silhouette
     box: tuple[slice, slice]
     drawn: np.ndarray
+    kinds: int
 
     def counts(self) -> np.ndarray:
-        """(2, 32) observed px of background and foreground by the set of limbs that cover them."""
-        places = _KINDS * self.silhouette.foreground[self.box].view(np.uint8) + self.drawn
+        """(2, 2^L) observed px of background and foreground by the set of limbs that cover them."""
+        foreground = self.silhouette.foreground[self.box].view(np.uint8)
+        places = self.drawn.dtype.type(self.kinds) * foreground + self.drawn
         observed = self.silhouette.observed[self.box]
-        return np.bincount(places[observed], minlength=2 * _KINDS).reshape(2, _KINDS)
+        return np.bincount(places[observed], minlength=2 * self.kinds).reshape(2, self.kinds)
 
     def contour(self) -> tuple[np.ndarray, np.ndarray]:
         """(n,) px between the model's contour and the silhouette, and the sets of limbs beside it.
@@ -56,21 +57,23 @@ def sights_of(
     silhouettes: Sequence[Silhouette],
 ) -> list[Sight]:
     """V sights of a pose (D,), ``rendered`` being V pictures (H, W) of all that it covers."""
-    sights = []
+    limbs = limb_segments(evaluator.body)
+    sights, kinds = [], 1 << len(limbs)
+    number = np.min_scalar_type(2 * kinds - 1)
     for silhouette, model in zip(silhouettes, rendered, strict=True):
         # with the pixels beyond the contour
         box = box_round(silhouette.foreground | model, margin_px=1)
-        sights.append(Sight(silhouette, box, np.zeros(model[box].shape, np.uint8)))
-    for limb, segments in enumerate(limb_segments(evaluator.body)):
+        sights.append(Sight(silhouette, box, np.zeros(model[box].shape, number), kinds))
+    for limb, segments in enumerate(limbs):
         for sight, part in zip(sights, evaluator.silhouettes(pose, segments), strict=True):
             np.bitwise_or(sight.drawn, 1 << limb, out=sight.drawn, where=part[sight.box])
     return sights
 
 
 @cache
-def sets_with_limbs() -> np.ndarray:
-    """(32, 5) bool, which of `LIMB_NAMES` belong to each set."""
-    return (np.arange(_KINDS)[:, None] >> np.arange(len(LIMB_NAMES)) & 1).astype(bool)
+def sets_with_limbs(limbs: int) -> np.ndarray:
+    """(2^L, L) bool, which of L limbs belong to each set."""
+    return (np.arange(1 << limbs)[:, None] >> np.arange(limbs) & 1).astype(bool)
 
 
 def contour_pairs(model: np.ndarray, observed: np.ndarray) -> np.ndarray:

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..body.body import Body
 from ..silhouettes.silhouette import Silhouette
-from .limbs import LIMB_NAMES
+from .limbs import limb_names
 from .lumps import unexplained
 from .scores import FrameScores, frame_scores
 from .tracker import Past, PoseFit, Tally, Tracker
@@ -72,7 +72,7 @@ def columns(
 
 
 def usual_lumps(lumps: Sequence[np.ndarray] | np.ndarray) -> np.ndarray:
-    """(5,) what is usual of `FrameScores.lumps`, n of (5,)."""
+    """(L,) what is usual of `FrameScores.lumps`, n of (L,)."""
     return np.quantile(lumps, _USUAL, axis=0)
 
 
@@ -86,16 +86,15 @@ class History:
 
     def __init__(self, body: Body, pose: np.ndarray):
         self._poses, self._trusted = [pose, pose], pose
-        self._troubled, self._amiss = np.zeros(len(LIMB_NAMES), int), 0
+        names = limb_names(body)
+        self._troubled, self._amiss = np.zeros(len(names), int), 0
         self._lumps: deque[np.ndarray] = deque(maxlen=_REMEMBERED)
         self._limbs = {
-            LIMB_NAMES.index(part.name): list(part.dofs)
-            for part in body.parts
-            if part.role == "limb"
+            names.index(part.name): list(part.dofs) for part in body.parts if part.role == "limb"
         }
 
     def add(self, pose: np.ndarray, lumps: np.ndarray, locked: bool = False) -> None:
-        """One more frame: its pose (D,), `FrameScores.lumps` (5,), and whether it was given.
+        """One more frame: its pose (D,), `FrameScores.lumps` (L,), and whether it was given.
 
         From a given pose nothing is expected to go on moving.
         """
@@ -125,7 +124,7 @@ class History:
 
     @property
     def _usual(self) -> np.ndarray:
-        return usual_lumps(self._lumps) if self._lumps else np.full(len(LIMB_NAMES), np.inf)
+        return usual_lumps(self._lumps) if self._lumps else np.full(len(self._troubled), np.inf)
 
 
 def track(

@@ -5,8 +5,9 @@ from fractions import Fraction
 
 import numpy as np
 
-from ..body.body import POINT_NAMES, Body
+from ..body.body import Body
 from ..body.kinematics import in_blocks, joint_positions, points
+from ..fitting.limbs import limb_names, point_limbs
 from ..fitting.tracking import Fits, FrameFit, columns
 from .motion import Motion
 
@@ -32,7 +33,7 @@ def recorded(fits: Fits, body: Body, camera_names: Sequence[str], fps: Fraction)
         joints=in_blocks(joint_positions, body, poses),
         joint_names=body.joint_names,
         points=in_blocks(points, body, poses),
-        point_names=POINT_NAMES,
+        point_names=body.point_names,
         xor_px=xor_px,
         iou=iou,
         view_weights=view_weights,
@@ -43,6 +44,8 @@ def recorded(fits: Fits, body: Body, camera_names: Sequence[str], fps: Fraction)
         locked=locked,
         confidence_raw=confidence.copy(),
         keyed=np.ones((len(fits), len(body.joint_names)), bool),
+        limb_names=limb_names(body),
+        point_limbs=point_limbs(body),
     )
 
 

@@ -4,17 +4,17 @@ from pathlib import Path
 
 import numpy as np
 
-from ..body.body import POINT_NAMES
 from ..motion.cleaning.cleaned import Cleaned
 from ..motion.cleaning.contacts import FEET
 from ..motion.cleaning.feet import Feet
+from ..motion.motion import Motion
 from ..pages.chart import Chart, Scale, Series, chart_figure
 from ..pages.document import Page, Section, paragraphs, tiles, write_page
 from ..pages.markup import Html, joined
 from ..pages.table import facts, table
 from ..pages.wording import counted, decimal, spans, whole
 
-_HIPS = [POINT_NAMES.index(f"{side}_hip") for side in FEET]
+_HIPS = tuple(f"{side}_hip" for side in FEET)
 
 
 def write_clean_page(path: Path, found: Cleaned, report: dict) -> None:
@@ -64,17 +64,35 @@ def _plots(found: Cleaned) -> Html:
     raw, clean, filled = found.raw, found.motion, found.filled
     moved = 1000 * np.linalg.norm(clean.points - raw.points, axis=2)
     hips = [
-        Series(name, motion.points[:, _HIPS, 2].mean(axis=1), style)
+        Series(name, _height(motion), style)
         for name, motion, style in (("raw", raw, 1), ("clean", clean, None))
     ]
     change = [Series("most", moved.max(axis=1), 1), Series("mean", moved.mean(axis=1))]
     charts = [
-        Chart("Height of the hips", "m; shaded: filled", raw.frames, hips, filled, Scale(digits=3)),
+        Chart(
+            f"Height of the {'hips' if _has_hips(raw) else 'root'}",
+            "m; shaded: filled",
+            raw.frames,
+            hips,
+            filled,
+            Scale(digits=3),
+        ),
         Chart("Change", "mm; shaded: filled", raw.frames, change, filled, Scale(0.0, None, 1)),
     ]
     if found.feet is not None:
         charts += [_foot_chart(raw.frames, found.feet, foot) for foot in FEET]
     return joined(map(chart_figure, charts))
+
+
+def _has_hips(motion: Motion) -> bool:
+    return set(_HIPS) <= set(motion.point_names)
+
+
+def _height(motion: Motion) -> np.ndarray:
+    """(T,) of the middle of the hips; of the root where there are none."""
+    if not _has_hips(motion):
+        return motion.joints[:, 0, 2]
+    return motion.points[:, [motion.point_names.index(name) for name in _HIPS], 2].mean(axis=1)
 
 
 def _foot_chart(frames: np.ndarray, feet: Feet, foot: str) -> Chart:

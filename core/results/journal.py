@@ -65,7 +65,7 @@ class Journal(Mapping[int, FrameFit]):
 
     def __init__(self, folder: Path, start: Start):
         self.folder, self.start = folder, start
-        kind = record_kind(len(start.pose), len(start.factors))
+        kind = record_kind(start.body, len(start.factors))
         self._records = Records(folder / _FRAMES, kind)
         self._count, self._places = 0, dict[int, int]()
         while (record := self._records.find(self._count)) is not None:

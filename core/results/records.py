@@ -13,10 +13,10 @@ from typing import BinaryIO
 
 import numpy as np
 
-from ..body.body import POINT_NAMES
+from ..body.body import Body
 from ..errors import MocapError
 from ..files import unwritable
-from ..fitting.limbs import LIMB_NAMES
+from ..fitting.limbs import limb_names
 from ..fitting.scores import FrameScores
 from ..fitting.tracker import Tally
 from ..fitting.tracking import FrameFit
@@ -105,8 +105,9 @@ def _opened(file: Path) -> BinaryIO:
         raise unwritable(file, error) from error
 
 
-def record_kind(dofs: int, views: int) -> np.dtype:
-    """What a record holds of a frame of a body with so many DOFs, seen by so many views."""
+def record_kind(body: Body, views: int) -> np.dtype:
+    """What a record holds of a frame of a body seen by so many views."""
+    dofs, limbs, points = len(body.dofs), len(limb_names(body)), len(body.point_names)
     return np.dtype(
         [
             ("frame", "<i8"),
@@ -114,13 +115,13 @@ def record_kind(dofs: int, views: int) -> np.dtype:
             ("xor_px", "<i8", (views,)),
             ("iou", "<f8", (views,)),
             ("contour_px", "<f8"),
-            ("limb_residual", "<f8", (len(LIMB_NAMES),)),
-            ("unexplained", "<f8", (len(LIMB_NAMES),)),
+            ("limb_residual", "<f8", (limbs,)),
+            ("unexplained", "<f8", (limbs,)),
             ("view_weights", "<f8", (views,)),
-            ("lumps", "<f8", (len(LIMB_NAMES),)),
-            ("point_spreads", "<f8", (len(POINT_NAMES),)),
+            ("lumps", "<f8", (limbs,)),
+            ("point_spreads", "<f8", (points,)),
             ("dof_spreads", "<f8", (dofs,)),
-            ("confidence", "<f8", (len(POINT_NAMES),)),
+            ("confidence", "<f8", (points,)),
             ("lost", "?"),
             ("locked", "?"),
             ("evaluated", "<i8"),

@@ -1,10 +1,10 @@
 """The charts of a fit's report: how every frame fits, camera by camera and limb by limb."""
 
 from collections.abc import Sequence
+from itertools import chain, count
 
 import numpy as np
 
-from ..fitting.limbs import LIMB_NAMES, limb_of
 from ..motion.motion import Motion
 from ..pages.axis import value_axis
 from ..pages.chart import Chart, Scale, Series, chart_figure
@@ -70,17 +70,22 @@ def _by_camera(motion: Motion, values: np.ndarray) -> list[Series]:
 
 
 def _residual(motion: Motion) -> list[Series]:
-    return _by_limb(motion.limb_residual)
+    return _by_limb(motion, motion.limb_residual)
 
 
 def _confidence(motion: Motion) -> list[Series]:
-    limbs = np.array([limb_of(point) for point in motion.point_names])
-    lowest = [motion.confidence[:, limbs == k].min(axis=1) for k in range(len(LIMB_NAMES))]
-    return _by_limb(np.column_stack(lowest))
+    limbs = np.array(motion.point_limbs)
+    lowest = [
+        motion.confidence[:, limbs == k].min(axis=1, initial=1.0)
+        for k in range(len(motion.limb_names))
+    ]
+    return _by_limb(motion, np.column_stack(lowest))
 
 
-def _by_limb(values: np.ndarray) -> list[Series]:
-    columns = zip(LIMB_NAMES, values.T, _LIMB_STYLES, strict=True)
+def _by_limb(motion: Motion, values: np.ndarray) -> list[Series]:
+    columns = zip(
+        motion.limb_names, values.T, chain(_LIMB_STYLES, count(len(_LIMB_STYLES) + 2)), strict=False
+    )
     return [Series(spoken(name), column, style) for name, column, style in columns]
 
 

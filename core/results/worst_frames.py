@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..fitting.limbs import LIMB_NAMES
 from ..motion.motion import Motion
 
 _NEIGHBOURHOOD = 24
@@ -22,7 +21,7 @@ class BadFrame:
         camera: the camera that falls furthest below its usual IoU; None where none observed
             anything.
         camera_iou: its IoU here and its median.
-        limb: the limb furthest off its usual residual, of `LIMB_NAMES`; None where all are hidden.
+        limb: the limb furthest off its usual residual, of the motion's; None where all are hidden.
         limb_px: its residual here and its median, px.
         unseen: cameras that observed nothing and show nothing.
         hidden: limbs that no camera shows.
@@ -83,10 +82,10 @@ def _described(
         lost=bool(motion.lost[index]),
         camera=None if camera is None else motion.camera_names[camera],
         camera_iou=_pair(views, usual[0], camera),
-        limb=None if limb is None else LIMB_NAMES[limb],
+        limb=None if limb is None else motion.limb_names[limb],
         limb_px=_pair(limbs, usual[1], limb),
         unseen=tuple(np.array(motion.camera_names)[np.isnan(views)].tolist()),
-        hidden=tuple(np.array(LIMB_NAMES)[np.isnan(limbs)].tolist()),
+        hidden=tuple(np.array(motion.limb_names)[np.isnan(limbs)].tolist()),
     )
 
 

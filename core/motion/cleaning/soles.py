@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...body.body import POINT_NAMES, Body
+from ...body.body import Body
 from ...body.kinematics import joint_transforms, posed_segment
 from ...errors import MocapError
 
@@ -44,7 +44,10 @@ class Soles:
         transforms = joint_transforms(body, body.rest_pose[None])[0]
         rows = []
         for foot, side in enumerate(("left", "right")):
-            ankle = int(body.point_joints[POINT_NAMES.index(f"{side}_ankle")])
+            name = f"{side}_ankle"
+            if name not in body.point_names:
+                raise _no_feet(body)
+            ankle = int(body.point_joints[body.point_names.index(name)])
             ends = _foot_ends(body, ankle, transforms)
             rows += [(foot, joint, place - transforms[joint, :, 3]) for joint, place in ends]
         feet, joints, offsets = zip(*rows, strict=True)
@@ -56,6 +59,10 @@ class Soles:
         return (carried[..., :3] @ self.offsets[..., None])[..., 0] + carried[..., 3]
 
 
+def _no_feet(body: Body) -> MocapError:
+    return MocapError(f"the body {body.name} has no feet", "clean with --no-contacts")
+
+
 def _foot_ends(body: Body, ankle: int, transforms: np.ndarray) -> list[tuple[int, np.ndarray]]:
     """Joints and places (3,) of heel, ball and tip in the rest pose."""
     chain = [ankle]
@@ -65,7 +72,7 @@ def _foot_ends(body: Body, ankle: int, transforms: np.ndarray) -> list[tuple[int
     vertices = {joint: _vertices(body, joint, transforms) for joint in chain}
     vertices = {joint: own for joint, own in vertices.items() if len(own)}
     if not vertices:
-        raise MocapError(f"the body {body.name} has no feet", "clean with --no-contacts")
+        raise _no_feet(body)
     level = min(own[:, 2].min() for own in vertices.values())
     soles = {joint: own[own[:, 2] <= level + _THICK_M] for joint, own in vertices.items()}
     soles = {joint: sole for joint, sole in soles.items() if len(sole)}

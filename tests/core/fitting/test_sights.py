@@ -21,7 +21,7 @@ def test_sights_count_what_every_limb_covers_as_whole_pictures_do():
         silhouettes.append(Silhouette(seen.foreground & observed, observed))
     drawn = evaluator(body, cameras)
     sights = sights_of(drawn, pose, drawn.silhouettes(pose), silhouettes)
-    px = np.array([sight.counts() for sight in sights]) @ sets_with_limbs()
+    px = np.array([sight.counts() for sight in sights]) @ sets_with_limbs(len(LIMB_NAMES))
     for limb, segments in enumerate(limb_segments(body)):
         for view, picture in enumerate(drawn.silhouettes(pose, segments)):
             covered = picture & silhouettes[view].observed
@@ -41,5 +41,5 @@ def test_the_contour_of_a_sight_has_the_distances_of_the_whole_picture():
         distances, limbs = sight.contour()
         wanted = np.abs(silhouettes[view].distances.ravel()[pairs].sum(axis=0)) / 2
         np.testing.assert_array_equal(distances, wanted)
-        beside = sets_with_limbs()[limbs, LIMB_NAMES.index("left_arm")]
+        beside = sets_with_limbs(len(LIMB_NAMES))[limbs, LIMB_NAMES.index("left_arm")]
         np.testing.assert_array_equal(beside, arm[view].ravel()[pairs].any(axis=0))
