@@ -42,14 +42,7 @@ def add_action(armature: bpy.types.Object, body: Body, name: str, keys: Keys) ->
     Every bone is keyed in rotation, quaternions of one sign along time; bones of joints that move
     are keyed in location too. Earlier actions stay in the file, kept by a fake user.
     """
-    animation = armature.animation_data_create()
-    if animation.action:
-        animation.action.use_fake_user = True
-    action = bpy.data.actions.new(name)
-    slot = action.slots.new(id_type="OBJECT", name=armature.name)
-    animation.action, animation.action_slot = action, slot
-    strip = action.layers.new("Layer").strips.new(type="KEYFRAME")
-    bag = strip.channelbag(slot, ensure=True)
+    action, bag = new_channels(armature, name)
     moves = joint_motions(body, keys.poses)
     moved = body.dofs.joints[body.dofs.kinds == DofKind.TRANSLATION]
     for joint, bone in enumerate(bone_names(body)):
@@ -63,17 +56,31 @@ def add_action(armature: bpy.types.Object, body: Body, name: str, keys: Keys) ->
             for index in range(values.shape[1]):
                 curve = bag.fcurves.new(f"{path}.{channel}", index=index)
                 curve.group = group
-                _key(curve, keys, keys.keyed[:, joint], values[:, index])
+                key_curve(curve, keys, keys.keyed[:, joint], values[:, index])
     return action
 
 
-def _key(curve: bpy.types.FCurve, keys: Keys, keyed: np.ndarray, values: np.ndarray) -> None:
+def new_channels(
+    armature: bpy.types.Object, name: str
+) -> tuple[bpy.types.Action, bpy.types.ActionChannelbag]:
+    """A new action, assigned to ``armature``, and where its curves go; the earlier one stays."""
+    animation = armature.animation_data_create()
+    if animation.action:
+        animation.action.use_fake_user = True
+    action = bpy.data.actions.new(name)
+    slot = action.slots.new(id_type="OBJECT", name=armature.name)
+    animation.action, animation.action_slot = action, slot
+    strip = action.layers.new("Layer").strips.new(type="KEYFRAME")
+    return action, strip.channelbag(slot, ensure=True)
+
+
+def key_curve(curve: bpy.types.FCurve, keys: Keys, keyed: np.ndarray, values: np.ndarray) -> None:
     """Adds the keys of one component (T,)."""
     frames, points = keys.frames[keyed], curve.keyframe_points
     places = np.column_stack([frames, values[keyed]])
     points.add(len(frames))
     points.foreach_set("co", places.ravel())
-    joined = "LINEAR" if keyed.all() else "BEZIER"
+    joined = "LINEAR" if keyed.all() or keyed.sum() == 1 else "BEZIER"
     interpolation = _number(bpy.types.Keyframe, "interpolation", joined)
     points.foreach_set("interpolation", np.full(len(frames), interpolation, np.int32))
     plain, extreme = (_number(bpy.types.Keyframe, "type", t) for t in ("KEYFRAME", "EXTREME"))
