@@ -117,7 +117,30 @@ def test_a_dog_has_its_own_limbs_and_turns_about_its_middle():
     assert "left_hip" in body.point_names and "end of tail.001" in body.point_names
 
 
-def test_a_chain_is_a_trunk_with_a_spine():
+def test_ends_too_small_to_be_seen_are_held_and_short_branches_make_no_limbs():
+    horns = [(f"horn.{s}", "head", (x, -0.5, 0.88), (x, -0.5, 1.0), 0.02)
+             for s, x in (("L", 0.05), ("R", -0.05))]  # fmt: skip
+    knobs = [(f"knob.{s}", f"horn.{s}", horn[3], (horn[3][0], -0.5, 1.03), 0.02)
+             for s, horn in zip("LR", horns, strict=True)]  # fmt: skip
+    rig = read([*rigs.DOG, *horns, *knobs])
+    assert "horn.L" in rig.body.joint_names and "knob.L" not in rig.body.joint_names
+    assert rig.carriers["knob.L"] == rig.body.joint_names.index("horn.L")
+    assert len(limb_names(rig.body)) == 7
+    (neck,) = (part for part in rig.body.parts if part.name == "neck")
+    names = {rig.body.segment_names[segment] for segment in neck.segments}
+    assert names == {"neck", "head", "horn.L", "horn.R"}
+
+
+def test_where_nothing_is_seen_of_the_trunk_the_longest_limb_belongs_to_it():
+    arms = [(f"{word}.{s}", parent.format(s=s), (sign * x, 0, 1), (sign * (x + 0.4), 0, 1), 0.04)
+            for s, sign in (("L", 1), ("R", -1.2))
+            for word, parent, x in (("near", "hub", 0.1), ("far", "near.{s}", 0.5))]  # fmt: skip
+    body = read([("hub", "", (0, 0, 0.9), (0, 0, 1), 0), *arms]).body
+    assert limb_names(body) == ("torso", "near.L")
+    assert [part.name for part in body.parts if part.role == "spine"] == ["spine"]
+
+
+def test_a_chain_is_a_trunk_with_one_limb():
     links = [(f"link{k}", f"link{k - 1}" if k else "", (0, 0, 0.3 * k), (0, 0, 0.3 * k + 0.3), 0.05)
              for k in range(4)]  # fmt: skip
     body = read(links).body
