@@ -10,7 +10,7 @@ import numpy as np
 from .errors import MocapError
 from .files import made_folder
 from .fitting.search import Search
-from .initialisation.first_pose import FirstFit, PoseRequest, initialised
+from .initialisation.first_pose import FirstFit, initialised
 from .initialisation.plausibility import check_first_fit
 from .progress import Progress
 from .rendering.choice import BEST, Choice
@@ -32,7 +32,7 @@ from .results.writing import (
 )
 from .silhouettes.silhouette import Silhouette
 from .take.first_look import check_first_look
-from .take.performer import known_height, performer_body
+from .take.performer import performer_body, pose_request
 from .take.take import Take
 from .take.views import Views, open_views
 
@@ -181,10 +181,8 @@ def initial_frames(take: Take, frames: tuple[int, int]) -> tuple[int, ...]:
 
 def _first_fit(take: Take, views: Views, seen: tuple[Silhouettes, ...], choice: Choice) -> FirstFit:
     body = performer_body(take.performer)
-    height = known_height(take.performer, body)
-    wanted = PoseRequest(take.initial_pose.kind, height, take.floor)
     try:
-        first = initialised(body, views.cameras, seen, wanted, choice)
+        first = initialised(body, views.cameras, seen, pose_request(take, body), choice)
         notes = check_first_fit(first, views.cameras)
     except MocapError as error:
         raise error.about(take.path) from error

@@ -9,13 +9,13 @@ import numpy as np
 
 from ..body.body import Body
 from ..errors import MocapError
-from ..initialisation.first_pose import PoseRequest, initialised
+from ..initialisation.first_pose import initialised
 from ..motion.point_track import PointTrack, read_point_track
 from ..pipeline import initial_frames
 from ..progress import Progress
 from ..rendering.choice import Choice
 from ..silhouettes.silhouette import Silhouette
-from ..take.performer import known_height, performer_body
+from ..take.performer import performer_body, pose_request
 from ..take.reading import read_take
 from ..take.take import Take
 from ..take.views import open_views
@@ -99,7 +99,7 @@ def beginning(take: Take, recording: Recording) -> Beginning:
     frames = [f for f in initial_frames(take, whole) if f in recording.frames]
     seen = tuple(recording.silhouettes(frame) for frame in frames)
     body = performer_body(take.performer)
-    wanted = PoseRequest(take.initial_pose.kind, known_height(take.performer, body), take.floor)
+    wanted = pose_request(take, body)
     found = initialised(body, recording.cameras, seen, wanted, native_choice())
     return Beginning(found.body, found.pose, frames[0])
 

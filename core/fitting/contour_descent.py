@@ -94,9 +94,16 @@ class Descent:
         outlines = self.evaluator.outline(pose, None, spacing_px)
         terms = targets.terms(outlines, transforms, reach, self.settings.turn_m)
         matrix, slope = (part / self.settings.deviation_m**2 for part in terms.gathered(twists))
-        rest = self._rest * terms.count.sum()
-        matrix[np.diag_indices(len(pose))] += rest + self._pull
-        return matrix, slope + rest * pose + self._pull * (pose - expected)
+        stiffness, force = self.priors(pose, expected, int(terms.count.sum()))
+        matrix[np.diag_indices(len(pose))] += stiffness
+        return matrix, slope + force
+
+    def priors(
+        self, pose: np.ndarray, expected: np.ndarray, count: int
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """(D,) diagonal and (D,) slope of rest prior and pull, beside ``count`` distances."""
+        rest = self._rest * count
+        return rest + self._pull, rest * pose + self._pull * (pose - expected)
 
     def _moved(self, pose: np.ndarray, matrix: np.ndarray, slope: np.ndarray) -> np.ndarray:
         """(D,) the pose after a damped step."""

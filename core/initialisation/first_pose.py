@@ -1,4 +1,4 @@
-"""Position, heading, scale and pose of the performer in the initial pose.
+"""Position, heading, scale, pose and shape of the performer in the initial pose.
 
 The performer stands in a known pose (SPEC §5, `initial_pose`). Position comes from the rays through
 the silhouettes' centroids, the uniform scale from the silhouettes' extent or the given height, the
@@ -19,6 +19,7 @@ from ..fitting.hierarchical import FAITHFUL, HierarchicalTracker
 from ..fitting.scores import frame_scores
 from ..fitting.tracker import EvaluatorFactory, Past, PoseFit
 from ..silhouettes.silhouette import Silhouette
+from .own_shape import in_own_shape
 from .pose_kinds import pose_of_kind
 from .standing import body_centre, row_span, standing_height
 
@@ -36,11 +37,13 @@ class PoseRequest:
         kind: "A", "T" or "elbows".
         height_m: the performer's height; None to measure it.
         floor: height of the floor in the world, metres.
+        own_shape: whether the body takes the performer's shape, or keeps its proportions.
     """
 
     kind: str
     height_m: float | None = None
     floor: float = 0.0
+    own_shape: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,11 +91,15 @@ def initialised(
     pose, doubt = _best_heading(tracker, frames[0], pose)
     if request.height_m is None:
         tracker, pose = _matched_extent(tracker, frames, pose, make_evaluator)
-    scores = frame_scores(tracker.evaluator, pose, frames[0])
+    body = tracker.body
+    if request.own_shape:
+        known = request.height_m
+        body, pose, told = in_own_shape(body, cameras, frames, pose, make_evaluator, known)
+        doubt = f"{doubt}; {told}"
+    scores = frame_scores(make_evaluator(body, cameras), pose, frames[0])
     _log.info("first pose: IoU by camera %s", scores.iou.round(3).tolist())
-    height = rest_height(tracker.body)
-    notes = (f"The performer is {height:.2f} m tall; {doubt}.",)
-    return FirstFit(tracker.body, pose, scores.iou, notes)
+    notes = (f"The performer is {rest_height(body):.2f} m tall; {doubt}.",)
+    return FirstFit(body, pose, scores.iou, notes)
 
 
 def placed(pose: np.ndarray, body: Body, centre: np.ndarray, floor: float) -> np.ndarray:

@@ -47,6 +47,13 @@ class ObservedContour:
             field[~observed] = np.nan
         return cls(field, px, normals)
 
+    def at(self, px: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """(n,) px from places px (n, 2) to the contour, and (n, 2) how that grows with them."""
+        px = px.astype(np.float32)
+        steps = np.array([[0, 0], [0.5, 0], [-0.5, 0], [0, 0.5], [0, -0.5]], np.float32)
+        middle, right, left, down, up = (_sampled(self.field, px + step) for step in steps)
+        return middle, np.stack([right - left, down - up], axis=1)
+
     def thinned(self, spacing_px: float) -> "ObservedContour":
         """The same with one point per square of ``spacing_px``."""
         squares = np.floor(self.px / spacing_px).astype(np.int64)
@@ -81,7 +88,7 @@ def _to_zero(field: np.ndarray, px: np.ndarray) -> tuple[np.ndarray, np.ndarray]
 
 
 def _sampled(picture: np.ndarray, px: np.ndarray) -> np.ndarray:
-    """(n,) values of a picture at px (n, 2)."""
+    """(n,) values of a picture at px (n, 2) float32."""
     blocks = np.array_split(px, len(px) // _MOST_AT_ONCE + 1)
     found = [
         cv2.remap(picture, b[:, 0], b[:, 1], cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)

@@ -6,8 +6,9 @@ from ..body.body import Body
 from ..body.file import read_body
 from ..body.kinematics import rest_height
 from ..body.templates import template
+from ..initialisation.first_pose import PoseRequest
 from ..initialisation.plausibility import check_height
-from .take import Performer
+from .take import Performer, Take
 
 
 def performer_body(performer: Performer) -> Body:
@@ -31,3 +32,17 @@ def known_height(performer: Performer, body: Body) -> float | None:
         check_height(height, performer.body)
         return height
     return performer.height_m
+
+
+def pose_request(take: Take, body: Body) -> PoseRequest:
+    """What is known of the initial pose of ``take``; a body read from a file keeps its shape.
+
+    Raises:
+        MocapError: as `known_height`.
+    """
+    return PoseRequest(
+        kind=take.initial_pose.kind,
+        height_m=known_height(take.performer, body),
+        floor=take.floor,
+        own_shape=not isinstance(take.performer.body, Path),
+    )
