@@ -80,5 +80,5 @@ def ankle_cut(half: Half) -> Cut:
     distances, nearest = KDTree(half.points[outer]).query(half.points[inner])
     narrow = np.flatnonzero(distances <= _AS_NARROW * distances.min())
     best = int(narrow[np.argmin(half.points[inner[narrow], 1])])
-    ends = half.indices[[outer[nearest[best]], inner[best]]]
+    ends = half.indices[[outer[int(np.asarray(nearest)[best])], inner[best]]]
     return cut_between(half.outline, *ends)
