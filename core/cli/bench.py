@@ -6,12 +6,15 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from ..bench import tracking
+from ..bench import skeleton, tracking
 from ..bench.energy import QUICK, EnergySettings, energy_figures
 from ..bench.energy_files import write_energy_files
 from ..bench.energy_report import as_dict
 from ..bench.markdown import whole_report
 from ..bench.prototypes import are_in
+from ..bench.skeleton import SkeletonSettings, skeleton_figures
+from ..bench.skeleton_report import as_dict as skeleton_as_dict
+from ..bench.skeleton_report import skeleton_report, write_skeleton_files
 from ..bench.tracking import TrackingSettings, tracking_figures
 from ..bench.tracking_files import report_text, write_tracking_files
 from ..bench.tracking_report import as_dict as tracking_as_dict
@@ -22,7 +25,6 @@ from ..results.report import write_report
 from .console import say
 
 EXAMPLE = "silhouette-mocap bench tracking --json tracking.json --out out/bench"
-TOPICS = ("energy", "tracking")
 Measured = tuple[str, dict, Callable[[Path], list[Path]]]
 """Tables, figures for JSON, and what writes tables and plots into a folder."""
 
@@ -30,9 +32,10 @@ Measured = tuple[str, dict, Callable[[Path], list[Path]]]
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The words of the command."""
     parser.add_argument(
-        "topic", choices=TOPICS,
+        "topic", choices=tuple(_TOPICS),
         help="energy: Tables 1 and 2 of the 2003 paper; tracking: errors and speed of the "
-        "trackers with takes whose motion is known, undisturbed and disturbed",
+        "trackers with takes whose motion is known, undisturbed and disturbed; skeleton: errors "
+        "of the joints that the contour shows in the initial pose",
     )  # fmt: skip
     parser.add_argument(
         "takes", nargs="*", type=Path, metavar="TAKE.toml",
@@ -40,7 +43,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     parser.add_argument("--json", type=Path, metavar="FILE", help="write all figures there")
     parser.add_argument(
-        "--out", type=Path, metavar="DIR", help="write tables (Markdown) and plots (SVG) there"
+        "--out", type=Path, metavar="DIR", help="write tables (Markdown) and plots (SVG, PNG) there"
     )
     parser.add_argument(
         "--prototypes", type=Path, metavar="DIR",
@@ -60,9 +63,7 @@ def run(arguments: argparse.Namespace, exporter: Exporter | None) -> int:
         made_folder(arguments.out)
     if arguments.json is not None:
         check_writable(arguments.json)
-    text, figures, write_files = {"energy": _energy, "tracking": _tracking}[arguments.topic](
-        arguments
-    )
+    text, figures, write_files = _TOPICS[arguments.topic](arguments)
     say(text)
     if arguments.json is not None:
         write_report(arguments.json, figures)
@@ -87,9 +88,28 @@ def _tracking(arguments: argparse.Namespace) -> Measured:
     return report_text(figures), tracking_as_dict(figures), partial(write_tracking_files, figures)
 
 
+def _skeleton(arguments: argparse.Namespace) -> Measured:
+    settings = skeleton.QUICK if arguments.quick else SkeletonSettings()
+    figures = skeleton_figures(settings, arguments.console)
+    return (
+        skeleton_report(figures),
+        skeleton_as_dict(figures),
+        partial(write_skeleton_files, figures),
+    )
+
+
+_TOPICS: dict[str, Callable[[argparse.Namespace], Measured]] = {
+    "energy": _energy,
+    "tracking": _tracking,
+    "skeleton": _skeleton,
+}
+
+
 def _check(arguments: argparse.Namespace) -> None:
     if arguments.topic != "tracking" and arguments.takes:
-        raise MocapError("bench energy needs no take", "leave it out", file=arguments.takes[0])
+        raise MocapError(
+            f"bench {arguments.topic} needs no take", "leave it out", file=arguments.takes[0]
+        )
     if arguments.prototypes is None:
         return
     if arguments.topic != "energy":

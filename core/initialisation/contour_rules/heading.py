@@ -17,7 +17,7 @@ from .seen_view import SeenView
 
 LEAST_FRONTAL = 0.5
 """Cosine of the angle between a view and the frontal direction, from which on it counts."""
-_HEADINGS, _ITERATIONS = 12, 3
+_HEADINGS, _ITERATIONS = 12, 2
 _LARGEST_MISS = 0.08
 _SIDES = ("shoulders", "elbows", "ankles")
 _POWER, _POWERS = 4, {"back": 8}
@@ -88,7 +88,9 @@ def heading_of(
     """
     angles = np.arange(_HEADINGS) * np.pi / _HEADINGS
     starts = [np.array([np.cos(a), np.sin(a), 0.0]) for a in angles]
-    found = [settled for start in starts if (settled := _settled(views, centre, start))]
+    # headings that call the same views frontal, and the same side left, end alike
+    distinct = {_sides(views, centre, start): start for start in starts}.values()
+    found = [settled for start in distinct if (settled := _settled(views, centre, start))]
     if not found:
         return None
     best = min(found, key=lambda heading: heading.miss)
@@ -104,6 +106,17 @@ def heading_of(
         if view.joints and best.frontality(view, centre) >= LEAST_FRONTAL
     )
     return replace(best, left=-best.left) if towards < 0 else best
+
+
+def _sides(views: Sequence[SeenView], centre: np.ndarray, left: np.ndarray) -> tuple[int, ...]:
+    """For each view, 1 where left is right in the picture, -1 where not, 0 where not frontal."""
+    heading = Heading(left, False, np.inf)
+    return tuple(
+        int(np.sign(view.right @ left))
+        if view.joints and heading.frontality(view, centre) >= LEAST_FRONTAL
+        else 0
+        for view in views
+    )
 
 
 def _settled(views: Sequence[SeenView], centre: np.ndarray, left: np.ndarray) -> Heading | None:

@@ -12,7 +12,7 @@ import numpy as np
 from ...cameras.camera import Camera
 from ...geometry.arrays import frozen_array
 
-_REWEIGHTINGS = 12
+_REWEIGHTINGS = 8
 _USUAL_M = 0.02
 """Distance at which a ray's weight is halved; what a rule means differs so much between views."""
 
