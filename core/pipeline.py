@@ -1,8 +1,9 @@
 """From a take to a motion and its files: the whole story on one screen."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import asdict, dataclass, field, replace
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,8 @@ from .files import made_folder
 from .fitting.search import Search
 from .initialisation.first_pose import FirstFit, initialised
 from .initialisation.plausibility import check_first_fit
+from .initialisation.sightings import Footage
+from .initialisation.unaided import found_unaided
 from .progress import Progress
 from .rendering.choice import BEST, Choice
 from .rendering.detail import OUTLINE_PX
@@ -128,24 +131,26 @@ def fit(take: Take, request: FitRequest, progress: Progress) -> FitResult:
 
 def _started(take: Take, views: Views, inputs: Inputs, choice: Choice, progress: Progress) -> Start:
     """The first pose, and what it was found from."""
-    start = initial_frames(take, views.frames)
+    begin = initial_frames(take, views.frames)
+    frames = begin if take.initial_pose.kind else searched_frames(begin)
     # before they are read, as the fit may take longer than a change of theirs
-    stamps = np.stack([views.stamps(frame) for frame in start])
-    views, seen = views.reduced_and_seen(start)
+    stamps = {frame: views.stamps(frame) for frame in frames}
+    views, seen = views.reduced_and_seen(begin)
     for note in views.notes:
         progress.note(note)
     looks = check_first_look(take, views, seen)
     for note in looks:
         progress.note(note)
     progress.begin("first pose", 1)
-    first = _first_fit(take, views, tuple(seen.values()), choice)
+    chosen, first = _first_fit(take, views, (frames, seen), choice)
+    frames = [chosen, *(frame for frame in frames if frame != chosen)]
     for note in first.notes:
         progress.note(note)
     return Start(
         inputs=inputs,
         factors=tuple(view.reduction.factor for view in views.views),
-        frames=np.array(start, np.int64),
-        stamps=stamps,
+        frames=np.array(frames, np.int64),
+        stamps=np.stack([stamps[frame] for frame in frames]),
         body=first.body,
         pose=first.pose,
         notes=(*choice.notes, *views.notes, *looks, *first.notes),
@@ -165,10 +170,13 @@ def _begun(out: Path, start: Start, progress: Progress) -> Journal:
 def initial_frames(take: Take, frames: tuple[int, int]) -> tuple[int, ...]:
     """Up to eight of the take's ``frames`` (first, last) that show the initial pose, in order.
 
+    Where the take names none, they lie all over it.
+
     Raises:
         MocapError: none of them does.
     """
-    first, last = take.initial_pose.frames or (frames[0], frames[0])
+    whole = frames if take.initial_pose.kind is None else (frames[0], frames[0])
+    first, last = take.initial_pose.frames or whole
     begin, end = max(first, frames[0]), min(last, frames[1])
     if begin > end:
         raise MocapError(
@@ -179,11 +187,35 @@ def initial_frames(take: Take, frames: tuple[int, int]) -> tuple[int, ...]:
     return tuple(int(f) for f in np.linspace(begin, end, count).round())
 
 
-def _first_fit(take: Take, views: Views, seen: tuple[Silhouettes, ...], choice: Choice) -> FirstFit:
+def searched_frames(frames: Sequence[int]) -> Sequence[int]:
+    """Rising ``frames`` and those halfway between them, to choose an initial pose from."""
+    halfway = ((before + after) // 2 for before, after in pairwise(frames))
+    return sorted({*frames, *halfway})
+
+
+def _first_fit(
+    take: Take,
+    views: Views,
+    looked: tuple[Sequence[int], Mapping[int, Silhouettes]],
+    choice: Choice,
+) -> tuple[int, FirstFit]:
+    """The frame that the first pose is of, and that pose.
+
+    ``looked`` at are some frames, and some of what they show is seen already.
+    """
+    frames, seen = looked
     body = performer_body(take.performer)
+    footage = Footage(
+        views.cameras, lambda f: seen.get(f) or views.silhouettes(f), views.frames, float(take.fps)
+    )
     try:
-        first = initialised(body, views.cameras, seen, pose_request(take, body), choice)
+        wanted = replace(pose_request(take, body), way=lambda: footage.way(frames[-1]))
+        if wanted.kind is None:
+            chosen, first = found_unaided(body, footage, frames, wanted, choice)
+        else:
+            shown = tuple(seen.values())
+            chosen, first = frames[0], initialised(body, views.cameras, shown, wanted, choice)
         notes = check_first_fit(first, views.cameras)
     except MocapError as error:
         raise error.about(take.path) from error
-    return replace(first, notes=(*first.notes, *notes))
+    return chosen, replace(first, notes=(*first.notes, *notes))

@@ -10,6 +10,8 @@ import numpy as np
 from ..body.body import Body
 from ..errors import MocapError
 from ..initialisation.first_pose import initialised
+from ..initialisation.sightings import Footage
+from ..initialisation.unaided import found_unaided
 from ..motion.point_track import PointTrack, read_point_track
 from ..pipeline import initial_frames
 from ..progress import Progress
@@ -97,16 +99,22 @@ def beginning(take: Take, recording: Recording) -> Beginning:
     """
     whole = (recording.frames[0], recording.frames[-1])
     frames = [f for f in initial_frames(take, whole) if f in recording.frames]
-    seen = tuple(recording.silhouettes(frame) for frame in frames)
     body = performer_body(take.performer)
     wanted = pose_request(take, body)
+    if wanted.kind is None:
+        footage = Footage(recording.cameras, recording.silhouettes, whole, float(take.fps))
+        chosen, found = found_unaided(body, footage, frames, wanted, native_choice())
+        return Beginning(found.body, found.pose, chosen)
+    seen = tuple(recording.silhouettes(frame) for frame in frames)
     found = initialised(body, recording.cameras, seen, wanted, native_choice())
     return Beginning(found.body, found.pose, frames[0])
 
 
 def initial_end(known: KnownTake) -> int:
-    """The last frame that the initial pose is sought in."""
+    """The last frame that shows the initial pose; the first one where the take names none."""
     frames = known.recording.frames
+    if known.take.initial_pose.kind is None:
+        return frames[0]
     return initial_frames(known.take, (frames[0], frames[-1]))[-1]
 
 

@@ -11,7 +11,7 @@ from ..native.library import load
 from ..progress import SILENCE, Progress
 from ..rendering.choice import MakeEvaluator
 from ..silhouettes.silhouette import Silhouette
-from ..take.first_look import check_first_look
+from ..take.first_look import check_first_look, shown
 from ..take.performer import known_height, performer_body
 from ..take.take import Take
 from ..take.views import TooFewCameras, Views, open_views
@@ -120,8 +120,8 @@ def _checked_views(take: Take, request: CheckRequest, faults: _Faults) -> TakeCh
     start, silhouettes, performer = 0, (), None
     with faults.noted():
         begin = request.initial_frames(take, views.frames)
-        (views, seen), start = views.reduced_and_seen(begin), begin[0]
-        silhouettes = seen[start]
+        views, seen = views.reduced_and_seen(begin)
+        start, silhouettes = next(iter(shown(take, seen).items()))
         found = replace(found, notes=(*found.notes, *check_first_look(take, views, seen)))
         performer = _performer(take, views, silhouettes)
     progress.advance(None)

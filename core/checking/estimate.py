@@ -20,7 +20,7 @@ from ..fitting.hierarchical import SETTINGS, HierarchicalTracker
 from ..fitting.scores import frame_scores
 from ..fitting.search import Search
 from ..fitting.tracker import EvaluatorFactory, Past, Tracker
-from ..initialisation.first_pose import placed
+from ..initialisation.hunt import stood
 from ..initialisation.pose_kinds import pose_of_kind
 from ..motion.overlay import JPEG_QUALITY, Tile, overlay_picture
 from ..rendering.choice import MakeEvaluator
@@ -112,8 +112,8 @@ def estimated(trial: Trial, reading_s: float) -> Estimate:
         MocapError: the body or a picture cannot be read.
     """
     body = _standing_body(trial)
-    pose = pose_of_kind(body, trial.take.initial_pose.kind)
-    pose = placed(pose, body, trial.performer.centre, trial.take.floor)
+    pose = pose_of_kind(body, trial.take.initial_pose.kind or "A")
+    pose = stood(body, pose[None], trial.performer.centre, trial.take.floor)[0]
     make_evaluator = with_level_for(pose, trial.make_evaluator)
     search, cameras = trial.take.search, trial.views.cameras
     tracker = _one_round(search, body, cameras, make_evaluator)

@@ -21,8 +21,11 @@ def take_words(check: TakeCheck) -> Facts:
     """What the take asks for, and what was found out about performer and units."""
     take, performer = check.take, check.performer
     frames = "unknown" if check.frames is None else f"{check.frames[0]} to {check.frames[1]}"
-    pose = take.initial_pose.frames
-    shown = "the first frame" if pose is None else f"frames {pose[0]} to {pose[1]}"
+    pose = take.initial_pose
+    where_shown = (
+        "the first frame" if pose.frames is None else "frames {} to {}".format(*pose.frames)
+    )
+    asked = "not given, a frame is found" if pose.kind is None else f"{pose.kind} in {where_shown}"
     truth = take.path.parent / "truth.npz"
     where = ""
     if performer is not None:
@@ -30,7 +33,7 @@ def take_words(check: TakeCheck) -> Facts:
         where = f", {performer.height_m:.2f} m tall, first at x {x:.2f}, y {y:.2f} m"
     return [
         ("take", f"{take.name}, {float(take.fps):.5g} frames per second, frames {frames}"),
-        ("initial", f"pose {take.initial_pose.kind} in {shown}"),
+        ("initial", f"pose {asked}"),
         ("performer", f"{take.performer.body}{where}; floor at {take.floor:g} m"),
         ("tracker", f"{take.search.tracker}, {take.search.setting}"),
         ("exports", ", ".join(take.exports) or "none"),

@@ -27,13 +27,9 @@ def restarts(
 
     They have the limbs of ``pose`` (D,), or at rest, and headings all round.
     """
-    centre = performer_centre(cameras, silhouettes)
+    centre = hull_centre(cameras, silhouettes)
     if centre is None:
         return np.zeros((0, len(pose)))
-    hull = visual_hull(cameras, silhouettes, centre, _HALF_M, _STEP_M)
-    if len(hull):
-        centre = hull.mean(axis=0)
-    shifts = np.flatnonzero((body.dofs.joints == 0) & (body.dofs.kinds == DofKind.TRANSLATION))
     tilts = np.flatnonzero((body.dofs.joints == 0) & (body.dofs.kinds != DofKind.TRANSLATION))
     upright = body.rest_pose.copy()
     upright[tilts] = pose[tilts]
@@ -41,6 +37,21 @@ def restarts(
     # either way round, so that no angle grows with every restart
     turns = np.linspace(-np.pi, np.pi, _HEADINGS, endpoint=False)
     shapes[:, heading_dof(body)] += np.tile(turns, 2)
-    middles = points(body, shapes).mean(axis=1)
-    shapes[:, shifts] += (centre - middles) @ body.dofs.axes[shifts].T
-    return shapes
+    return moved(body, shapes, centre - points(body, shapes).mean(axis=1))
+
+
+def hull_centre(cameras: Sequence[Camera], silhouettes: Sequence[Silhouette]) -> np.ndarray | None:
+    """(3,) the middle of the visual hull; None where fewer than two views show anything."""
+    centre = performer_centre(cameras, silhouettes)
+    if centre is None:
+        return None
+    hull = visual_hull(cameras, silhouettes, centre, _HALF_M, _STEP_M)
+    return hull.mean(axis=0) if len(hull) else centre
+
+
+def moved(body: Body, poses: np.ndarray, shifts_m: np.ndarray) -> np.ndarray:
+    """Poses (N, D) moved by (N, 3) m."""
+    dofs = np.flatnonzero((body.dofs.joints == 0) & (body.dofs.kinds == DofKind.TRANSLATION))
+    out = poses.copy()
+    out[:, dofs] += shifts_m @ body.dofs.axes[dofs].T
+    return out

@@ -49,10 +49,16 @@ def turned(evaluator: Evaluator, pose: np.ndarray) -> np.ndarray:
         resting = start.copy()
         resting[arms] = body.rest_pose[arms]
         found += [start, resting]
-    about = _exchanged(body, pose, (*ARMS, *_LEGS))
-    about[heading] += np.pi if pose[heading] < 0 else -np.pi
-    poses = clamped(body, np.stack([*found, about, _exchanged(body, pose, _LEGS)]))
+    poses = np.stack([*found, turned_about(body, pose), _exchanged(body, pose, _LEGS)])
+    poses = clamped(body, poses)
     return poses[(poses != pose).any(axis=1)]
+
+
+def turned_about(body: Body, pose: np.ndarray) -> np.ndarray:
+    """(D,) the pose facing the other way, with left and right limbs exchanged."""
+    about, heading = _exchanged(body, pose, (*ARMS, *_LEGS)), heading_dof(body)
+    about[heading] += np.pi if pose[heading] < 0 else -np.pi
+    return about
 
 
 def _exchanged(body: Body, pose: np.ndarray, limbs: Sequence[str]) -> np.ndarray:

@@ -2,8 +2,9 @@
 
 The performer stands in a known pose (SPEC §5, `initial_pose`). Position comes from the rays through
 the silhouettes' centroids, the uniform scale from the silhouettes' extent or the given height, the
-heading from the XOR energy: a ring of headings is fitted roughly, and the best four completely,
-since a silhouette looks much the same from in front and from behind, and the best fit wins.
+heading from the XOR energy: the known pose is laid all round, drawn to the contours from the best
+headings, and fitted completely from the best end and from its opposite (`facing`), since a
+silhouette looks much the same from in front and from behind.
 """
 
 import logging
@@ -11,22 +12,29 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..body.body import Body, DofKind
+from ..body.body import Body
 from ..body.kinematics import rest_height
 from ..body.scaling import scaled
 from ..cameras.camera import Camera
-from ..fitting.hierarchical import FAITHFUL, HierarchicalTracker
-from ..fitting.scores import frame_scores
-from ..fitting.tracker import EvaluatorFactory, Past, PoseFit
+from ..fitting.contour import ContourTracker
+from ..fitting.scores import FrameScores, frame_scores
+from ..fitting.tracker import EvaluatorFactory, Past
+from ..fitting.turns import heading_dof
 from ..silhouettes.silhouette import Silhouette
+from .facing import Way, faced
+from .hunt import Hunt, all_round, stood
 from .own_shape import in_own_shape
 from .pose_kinds import pose_of_kind
 from .standing import body_centre, row_span, standing_height
 
 _log = logging.getLogger(__name__)
-_HEADINGS = 12
-_COMPLETE_FITS = 4
+_DESCENTS = 4
 _EXTENT_PASSES = 2
+Silhouettes = tuple[Silhouette, ...]
+
+
+def _unknown() -> None:
+    return None
 
 
 @dataclass(frozen=True)
@@ -34,16 +42,19 @@ class PoseRequest:
     """What is known of the initial pose.
 
     Attributes:
-        kind: "A", "T" or "elbows".
+        kind: "A", "T" or "elbows"; None where nothing is known, see `unaided`.
         height_m: the performer's height; None to measure it.
         floor: height of the floor in the world, metres.
         own_shape: whether the body takes the performer's shape, or keeps its proportions.
+        way: tells where the performer goes; asked only where the silhouettes leave it open which
+            way the performer faces.
     """
 
-    kind: str
+    kind: str | None
     height_m: float | None = None
     floor: float = 0.0
     own_shape: bool = False
+    way: Way = _unknown
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,7 +77,7 @@ class FirstFit:
 def initialised(
     template: Body,
     cameras: tuple[Camera, ...],
-    frames: tuple[tuple[Silhouette, ...], ...],
+    frames: tuple[Silhouettes, ...],
     request: PoseRequest,
     make_evaluator: EvaluatorFactory,
 ) -> FirstFit:
@@ -84,97 +95,98 @@ def initialised(
             ]
         )
     )
-    body = scaled(template, round(height / rest_height(template), 6))
+    body = of_height(template, height)
     _log.info("performer %.3f m tall, around %s m", height, centres[0].round(3).tolist())
-    pose = placed(pose_of_kind(body, request.kind), body, centres[0], request.floor)
-    tracker = HierarchicalTracker(body, cameras, make_evaluator)
-    pose, doubt = _best_heading(tracker, frames[0], pose)
+    assert request.kind is not None
+    starts = all_round(body, pose_of_kind(template, request.kind)[None])
+    hunt = Hunt(ContourTracker(body, cameras, make_evaluator), frames[0])
+    ends = hunt.ends(stood(body, starts, centres[0], request.floor), _DESCENTS)
+    yaw = heading_dof(body)
+    shown = (f"{round(np.degrees(end.pose[yaw])) % 360}°: {end.energy:.0f}" for end in ends)
+    _log.info("first descents, energy by heading: %s", ", ".join(shown))
+    first, _ = settled(hunt, ends[0].pose, frames, request, make_evaluator)
+    return measured(first, cameras, frames, request, make_evaluator)
+
+
+def of_height(template: Body, height: float) -> Body:
+    """The template scaled to a standing height, m."""
+    return scaled(template, round(height / rest_height(template), 6))
+
+
+def settled(
+    hunt: Hunt,
+    pose: np.ndarray,
+    frames: tuple[Silhouettes, ...],
+    request: PoseRequest,
+    make_evaluator: EvaluatorFactory,
+) -> tuple[FirstFit, FrameScores]:
+    """The body at its size, and its pose in the first of ``frames``, from a pose (D,) near by.
+
+    With it come the scores of that frame. ``frames`` all show that pose, the ``hunt`` is for the
+    first of them.
+    """
+    fit = hunt.complete(pose)
     if request.height_m is None:
-        tracker, pose = _matched_extent(tracker, frames, pose, make_evaluator)
-    body = tracker.body
+        tracker, pose = _matched_extent(hunt.tracker, frames, fit.pose, make_evaluator)
+        hunt = Hunt(tracker, frames[0])
+        fit = hunt.complete(pose)
+    facing = faced(hunt, fit, request.way)
+    pose = facing.fit.pose
+    scores = hunt.scores(pose)
+    return FirstFit(hunt.body, pose, scores.iou, (facing.words,)), scores
+
+
+def measured(
+    first: FirstFit,
+    cameras: tuple[Camera, ...],
+    frames: tuple[Silhouettes, ...],
+    request: PoseRequest,
+    make_evaluator: EvaluatorFactory,
+) -> FirstFit:
+    """The first fit in the performer's own shape, if that is wanted; its first note tells it.
+
+    ``frames`` all show its pose.
+    """
+    told = ""
     if request.own_shape:
-        known = request.height_m
-        body, pose, told = in_own_shape(body, cameras, frames, pose, make_evaluator, known)
-        doubt = f"{doubt}; {told}"
-    scores = frame_scores(make_evaluator(body, cameras), pose, frames[0])
-    _log.info("first pose: IoU by camera %s", scores.iou.round(3).tolist())
-    notes = (f"The performer is {rest_height(body):.2f} m tall; {doubt}.",)
-    return FirstFit(body, pose, scores.iou, notes)
-
-
-def placed(pose: np.ndarray, body: Body, centre: np.ndarray, floor: float) -> np.ndarray:
-    """``pose`` moved over ``centre`` (3,), the feet on the floor."""
-    moved = pose.copy()
-    translations = np.flatnonzero(body.dofs.kinds == DofKind.TRANSLATION)[:3]
-    moved[translations] = [centre[0], centre[1], floor]
-    return moved
-
-
-def _turned(pose: np.ndarray, body: Body, heading: float) -> np.ndarray:
-    """``pose`` turned about the vertical by ``heading`` rad."""
-    turned = pose.copy()
-    turned[_yaw_dof(body)] += heading
-    return turned
-
-
-def _yaw_dof(body: Body) -> int:
-    about_z = (body.dofs.kinds == DofKind.HINGE) & (body.dofs.axes[:, 2] > 0.99)
-    return int(np.flatnonzero(about_z & (body.dofs.joints == 0))[0])
-
-
-def _best_heading(
-    tracker: HierarchicalTracker, silhouettes: tuple[Silhouette, ...], pose: np.ndarray
-) -> tuple[np.ndarray, str]:
-    """The best complete fit over four headings, and how clearly it won, in words."""
-    body = tracker.body
-    quick = tracker.with_settings(replace(FAITHFUL, rounds=1))
-    ring = (_turned(pose, body, k * 2 * np.pi / _HEADINGS) for k in range(_HEADINGS))
-    rough = sorted((quick.fit(silhouettes, Past.still(start)) for start in ring), key=_energy)
-    starts = [fit.pose for fit in rough[:_COMPLETE_FITS]]
-    fits = sorted((tracker.fit(silhouettes, Past.still(start)) for start in starts), key=_energy)
-    yaw = _yaw_dof(body)
-    for kind, found in (("rough", rough), ("complete", fits)):
-        shown = (f"{round(np.degrees(fit.pose[yaw])) % 360}°: {fit.energy}" for fit in found)
-        _log.info("%s fits, energy by heading: %s", kind, ", ".join(shown))
-    best = fits[0]
-    others = [fit for fit in fits if np.cos(fit.pose[yaw] - best.pose[yaw]) < np.cos(np.pi / 4)]
-    if not others:
-        return best.pose, "no other heading came near"
-    margin = others[0].energy / max(best.energy, 1.0) - 1.0
-    return best.pose, f"the next best heading is {margin:.0%} worse"
-
-
-def _energy(fit: PoseFit) -> int:
-    return fit.energy
+        start = (first.body, cameras, frames, first.pose, make_evaluator, request.height_m)
+        body, pose, words = in_own_shape(*start)
+        iou = frame_scores(make_evaluator(body, cameras), pose, frames[0]).iou
+        first, told = replace(first, body=body, pose=pose, iou=iou), f"; {words}"
+    _log.info("first pose: IoU by camera %s", first.iou.round(3).tolist())
+    note = f"The performer is {rest_height(first.body):.2f} m tall{told}."
+    return replace(first, notes=(note, *first.notes))
 
 
 def _matched_extent(
-    tracker: HierarchicalTracker,
-    frames: tuple[tuple[Silhouette, ...], ...],
+    tracker: ContourTracker,
+    frames: tuple[Silhouettes, ...],
     pose: np.ndarray,
     make_evaluator: EvaluatorFactory,
-) -> tuple[HierarchicalTracker, np.ndarray]:
+) -> tuple[ContourTracker, np.ndarray]:
     """The tracker of a body rescaled until it is as tall in the pictures as the performer."""
     for _ in range(_EXTENT_PASSES):
+        cameras = tracker.evaluator.cameras
         ratio = _extent_ratio(tracker, frames, pose)
-        body = scaled(tracker.body, ratio)
-        tracker = HierarchicalTracker(body, tracker.cameras, make_evaluator, tracker.settings)
+        body = scaled(tracker.evaluator.body, ratio)
+        tracker = ContourTracker(body, cameras, make_evaluator, tracker.settings)
         pose = tracker.fit(frames[0], Past.still(pose)).pose
     return tracker, pose
 
 
 def _extent_ratio(
-    tracker: HierarchicalTracker, frames: tuple[tuple[Silhouette, ...], ...], pose: np.ndarray
+    tracker: ContourTracker, frames: tuple[Silhouettes, ...], pose: np.ndarray
 ) -> float:
     """Median ratio of the observed silhouettes' height in the pictures to the rendered ones'."""
-    everything = [np.ones((c.size[1], c.size[0]), bool) for c in tracker.cameras]
+    cameras = tracker.evaluator.cameras
+    everything = [np.ones((c.size[1], c.size[0]), bool) for c in cameras]
     rendered = [
         row_span(Silhouette(picture, observed))
         for picture, observed in zip(tracker.evaluator.silhouettes(pose), everything, strict=True)
     ]
     ratios = []
     for silhouettes in frames:
-        for camera, model, silhouette in zip(tracker.cameras, rendered, silhouettes, strict=True):
+        for camera, model, silhouette in zip(cameras, rendered, silhouettes, strict=True):
             seen = row_span(silhouette)
             if seen is None or model is None:
                 continue

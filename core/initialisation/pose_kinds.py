@@ -1,21 +1,61 @@
-"""The poses a performer may be asked to stand in at the start of a take."""
+"""The poses a performer may be asked to stand in at the start of a take, and stances met unasked.
+
+Arms and legs are solved so that elbow and wrist, knee and ankle lie where the stance says, whatever
+the body's own angles are, each limb by itself under a trunk at rest.
+"""
+
+from functools import lru_cache
+from itertools import product
 
 import numpy as np
 from scipy.optimize import least_squares
 
-from ..body.body import POINT_NAMES, Body
-from ..body.kinematics import points
+from ..body.body import POINT_NAMES, Body, Part
+from ..body.kinematics import carried_points, clamped
 from ..errors import MocapError
+from ..fitting.twists import Twists
 
-POSE_KINDS = {"A": (45.0, None), "T": (90.0, None), "elbows": (80.0, 0.0)}
-"""Kind -> degrees that upper arm and forearm are out from hanging; None: forearm as upper arm."""
+Direction = tuple[float, float]
+"""Degrees that a bone is out to its side and to the front, from hanging straight down."""
+Limb = tuple[Direction, Direction]
+"""Upper arm and forearm, or thigh and shank."""
+
+_ALIKE = {
+    "A": ((45, 0), (45, 0)),
+    "T": ((90, 0), (90, 0)),
+    "elbows": ((80, 0), (0, 0)),
+    "hanging": ((10, 0), (5, 10)),
+    "bent": ((15, 0), (5, 90)),
+    "forward": ((5, 80), (0, 85)),
+    "up": ((150, 0), (170, 0)),
+}
+_ARM_AHEAD, _ARM_BEHIND = ((10, 25), (5, 45)), ((10, -25), (8, 0))
+_LEG_AHEAD, _LEG_BEHIND = ((3, 25), (3, 10)), ((3, -15), (3, -40))
+_SEATED = ((10, 80), (4, 0))
+
+POSE_KINDS = ("A", "T", "elbows")
+"""Those that a take may name; "elbows" has upper arms lifted, forearms hanging straight down."""
+ASKED = (*POSE_KINDS, "hanging")
+"""Arms of somebody who stands."""
+ARMS: dict[str, tuple[Limb, Limb]] = {
+    **{name: (limb, limb) for name, limb in _ALIKE.items()},
+    "swinging": (_ARM_AHEAD, _ARM_BEHIND),
+    "swinging back": (_ARM_BEHIND, _ARM_AHEAD),
+}
+"""Name -> left and right arm."""
+STANDING = "standing"
+LEGS: dict[str, tuple[Limb, Limb] | None] = {
+    STANDING: None,
+    "stepping": (_LEG_AHEAD, _LEG_BEHIND),
+    "stepping back": (_LEG_BEHIND, _LEG_AHEAD),
+    "sitting": (_SEATED, _SEATED),
+}
+"""Name -> left and right leg; None for those of the rest pose."""
+_JOINTS = {"arm": ("shoulder", "elbow", "wrist"), "leg": ("hip", "knee", "ankle")}
 
 
 def pose_of_kind(body: Body, kind: str) -> np.ndarray:
-    """(D,) pose with the arms of ``kind``: "A", "T" or "elbows" (forearms hanging straight down).
-
-    The arms' DOFs are solved so that elbow and wrist lie where the kind says, whatever the body's
-    own angles are.
+    """(D,) pose with the arms of ``kind``, one of `POSE_KINDS`.
 
     Raises:
         MocapError: an unknown kind.
@@ -24,36 +64,55 @@ def pose_of_kind(body: Body, kind: str) -> np.ndarray:
         raise MocapError(
             f'initial_pose kind "{kind}" is unknown', f"use one of {', '.join(POSE_KINDS)}"
         )
+    return stance(body, kind, STANDING)
+
+
+def all_stances() -> list[tuple[str, str]]:
+    """Names of all `ARMS` over all `LEGS`."""
+    return list(product(ARMS, LEGS))
+
+
+def stance(body: Body, arms: str, legs: str) -> np.ndarray:
+    """(D,) pose with limbs by the names in `ARMS` and `LEGS`; what has no such limbs is at rest.
+
+    It faces the front, and its root is where the rest pose has it.
+    """
     pose = body.rest_pose.copy()
     for part in body.parts:
-        if part.role == "limb" and part.name.endswith("_arm"):
-            dofs = list(part.grid)
-            pose[dofs] = _solved_arm(body, dofs, part.name.removesuffix("_arm"), kind)
-    return pose
+        side, _, limb = part.name.partition("_")
+        if part.role != "limb" or limb not in _JOINTS or body.point_names != POINT_NAMES:
+            continue
+        wanted = ARMS[arms] if limb == "arm" else LEGS[legs]
+        if wanted is not None:
+            pose[list(part.grid)] = _solved(body, part, wanted[side == "right"])
+    return clamped(body, pose[None])[0]
 
 
-def _solved_arm(body: Body, dofs: list[int], side: str, kind: str) -> np.ndarray:
-    indices = [POINT_NAMES.index(f"{side}_{joint}") for joint in ("shoulder", "elbow", "wrist")]
+@lru_cache(maxsize=256)
+def _solved(body: Body, part: Part, wanted: Limb) -> np.ndarray:
+    """Values of the part's grid that bring its joints where they are ``wanted``."""
+    dofs, (side, _, limb) = list(part.grid), part.name.partition("_")
+    indices = [POINT_NAMES.index(f"{side}_{joint}") for joint in _JOINTS[limb]]
+    twists = Twists(body)
 
-    def arm(values: np.ndarray) -> np.ndarray:
+    def joints(values: np.ndarray) -> np.ndarray:
         pose = body.rest_pose.copy()
         pose[dofs] = values
-        return points(body, pose[None])[0, indices]
+        return carried_points(body, twists.at(pose)[0][None])[0, indices]
 
-    shoulder, elbow, wrist = arm(np.zeros(len(dofs)))
-    upper, fore = POSE_KINDS[kind]
+    first, *_ = at_rest = joints(np.zeros(len(dofs)))
+    lengths = np.linalg.norm(np.diff(at_rest, axis=0), axis=1)
     outward = 1.0 if side == "left" else -1.0
-    elbow_target = shoulder + np.linalg.norm(elbow - shoulder) * _hanging(upper, outward)
-    fore_direction = _hanging(upper if fore is None else fore, outward)
-    wrist_target = elbow_target + np.linalg.norm(wrist - elbow) * fore_direction
+    bones = [_direction(direction, outward) for direction in wanted]
+    targets = first + np.cumsum(lengths[:, None] * bones, axis=0)
     low, high = body.dofs.limits[dofs].T
     start = np.clip(np.full(len(dofs), 0.1), low + 1e-3, high - 1e-3)
-    targets = np.concatenate([elbow_target, wrist_target])
-    found = least_squares(lambda v: arm(v)[1:].ravel() - targets, start, bounds=(low, high))
+    found = least_squares(lambda v: (joints(v)[1:] - targets).ravel(), start, bounds=(low, high))
     return np.round(found.x, 4)
 
 
-def _hanging(degrees: float, outward: float) -> np.ndarray:
-    """Unit direction in the frontal plane, ``degrees`` out from hanging straight down."""
-    angle = np.radians(degrees)
-    return np.array([outward * np.sin(angle), 0.0, -np.cos(angle)])
+def _direction(wanted: Direction, outward: float) -> np.ndarray:
+    """(3,) unit vector."""
+    out, front = np.radians(wanted)
+    ahead, down = np.cos(out) * np.sin(front), np.cos(out) * np.cos(front)
+    return np.array([outward * np.sin(out), -ahead, -down])

@@ -41,6 +41,7 @@ def check_first_look(take: Take, views: Views, seen: Mapping[int, Silhouettes]) 
         MocapError: masks that are inverted, fewer than two views of a frame that show anything, a
             camera that never shows anything, or a calibration that does not go with the masks.
     """
+    seen = shown(take, seen)
     frame = next(iter(seen))
     for view, silhouette in zip(views.views, seen[frame], strict=True):
         _check_not_inverted(view, silhouette, frame)
@@ -55,6 +56,21 @@ def check_first_look(take: Take, views: Views, seen: Mapping[int, Silhouettes]) 
     _check_rays(take, views.cameras, seen[frame], centre)
     _check_upright(take, views.cameras, seen[frame], centre)
     return tuple(notes)
+
+
+def shown(take: Take, seen: Mapping[int, Silhouettes]) -> Mapping[int, Silhouettes]:
+    """What is ``seen`` in frames that should show the initial pose.
+
+    Where the take names none, they are those in which two views show anything, or else all.
+    """
+    if take.initial_pose.kind is not None:
+        return seen
+    found = {
+        frame: silhouettes
+        for frame, silhouettes in seen.items()
+        if sum(silhouette.foreground.any() for silhouette in silhouettes) >= 2
+    }
+    return found or seen
 
 
 def _check_not_inverted(view: View, silhouette: Silhouette, frame: int) -> None:

@@ -192,6 +192,8 @@ def exact_fps(fps: float) -> Fraction:
 
 def _initial_pose(table: Table, frames: tuple[int, int] | None) -> InitialPose:
     table.allow("frames", "kind")
+    if not table.values:
+        return InitialPose(kind=None)
     pose = InitialPose(table.frames("frames"), table.choice("kind", INITIAL_KINDS, "A"))
     if frames and pose.frames and not frames[0] <= pose.frames[0] <= pose.frames[1] <= frames[1]:
         table.fault(

@@ -17,11 +17,12 @@ class InitialPose:
 
     Attributes:
         frames: first and last frame that show it, inclusive; None for the take's first frame.
-        kind: ``A``, ``T`` or ``elbows`` (upper arms lifted, forearms hanging straight down).
+        kind: ``A``, ``T`` or ``elbows`` (upper arms lifted, forearms hanging straight down); None
+            where the take tells nothing, and a frame has to be found.
     """
 
     frames: tuple[int, int] | None = None
-    kind: str = "A"
+    kind: str | None = "A"
 
 
 @dataclass(frozen=True)

@@ -31,6 +31,13 @@ def painted(path: Path, change) -> None:
     cv2.imwrite(str(path), change(cv2.imread(str(path), cv2.IMREAD_GRAYSCALE)))
 
 
+def down_to_the_edge(picture: np.ndarray) -> np.ndarray:
+    """A performer whose feet are beyond the picture."""
+    rows, columns = np.nonzero(picture)
+    picture[rows.max() - 8 :, columns[rows > rows.max() - 8]] = 255
+    return picture
+
+
 def videos(folder: Path, frames: int = 4) -> None:
     """The masks as silhouette videos, which the take then uses."""
     for camera in CAMERAS:
@@ -277,6 +284,19 @@ def _(folder: Path):
     for camera in CAMERAS[1:]:
         for frame in (0, 1):
             painted(mask(folder, camera, frame), np.zeros_like)
+
+
+@MASKS.add(
+    "no initial pose, and nobody whole in any frame",
+    "fewer than two cameras",
+    "initial_pose = {",
+    early=False,
+)
+def _(folder: Path):
+    replace_text(folder / "take.toml", 'initial_pose = { frames = [0, 1], kind = "A" }', "")
+    for camera in CAMERAS:
+        for frame in range(4):
+            painted(mask(folder, camera, frame), down_to_the_edge)
 
 
 @MASKS.add(

@@ -123,6 +123,34 @@ def test_frames_before_the_initial_pose_are_tracked_backwards(quick_start, small
     assert result.report["error_mm"]["absolute"]["max"] < 100
 
 
+def test_a_take_without_an_initial_pose_starts_from_the_frame_that_is_found(
+    small_take, tmp_path, monkeypatch
+):
+    take, found = replace(read_take(small_take), initial_pose=InitialPose(kind=None)), []
+    search = pipeline.found_unaided
+
+    def last(body, footage, frames, request, make_evaluator):
+        found.append(list(frames))
+        return search(body, footage, frames[-1:], request, make_evaluator)
+
+    monkeypatch.setattr(pipeline, "found_unaided", last)
+    progress = Notes()
+    result = fit(take, FitRequest(tmp_path), progress)
+    assert found == [[0, 1, 2, 3]]
+    assert progress.frames == [3, 2, 1, 0]
+    assert any("frame 3 was chosen" in note for note in progress.told)
+    # 4 m away with a focal length of 137 px, one pixel is 29 mm
+    assert result.report["error_mm"]["absolute"]["mean"] < 29
+
+
+def test_frames_to_choose_from_lie_all_over_the_take_and_between_them(small_take):
+    take = replace(read_take(small_take), initial_pose=InitialPose(kind=None))
+    begin = initial_frames(take, (10, 80))
+    assert begin == (10, 20, 30, 40, 50, 60, 70, 80)
+    assert pipeline.searched_frames(begin) == list(range(10, 81, 5))
+    assert pipeline.searched_frames([3]) == [3]
+
+
 def test_no_footage_is_read_by_two_threads_at_once(quick_start, small_take, tmp_path, monkeypatch):
     busy, faults = defaultdict(threading.Lock), []
 

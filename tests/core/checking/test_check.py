@@ -133,6 +133,18 @@ def test_an_initial_pose_outside_of_the_take_is_a_fault_beside_the_cameras(folde
     assert len(check.cameras) == 5 and np.isnan(check.cameras[0].mm_per_px)
 
 
+def test_a_take_without_an_initial_pose_is_looked_at_where_it_shows_somebody(folder):
+    path = folder / "take.toml"
+    lines = path.read_text("utf-8").splitlines()
+    kept = [line for line in lines if not line.startswith("initial_pose")]
+    path.write_text("\n".join(kept), "utf-8")
+    for mask in folder.glob("masks/*/000000.png"):
+        cv2.imwrite(str(mask), np.zeros((120, 160), np.uint8))
+    check = check_of(path)
+    assert not check.faults and check.performer is not None
+    assert dict(take_words(check))["initial"] == "pose not given, a frame is found"
+
+
 def test_a_given_height_is_taken(folder):
     path = folder / "take.toml"
     path.write_text(path.read_text("utf-8") + "height_m = 1.81\n", "utf-8")

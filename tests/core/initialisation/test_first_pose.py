@@ -45,24 +45,6 @@ def test_a_given_height_is_kept():
     assert rest_height(first.body) == pytest.approx(1.8)
 
 
-@pytest.mark.parametrize("name", ["performer", "sixteen_segment"])
-def test_the_kinds_put_the_arms_where_they_say(name):
-    body = small_body(name)
-    for kind, elbow_drop, wrist_drop in (("A", 0.707, 0.707), ("T", 0.0, 0.0), ("elbows", 0.17, 1)):
-        found = points(body, pose_of_kind(body, kind)[None])[0]
-        shoulder, elbow, wrist = found[[2, 4, 6]]
-        upper, fore = elbow - shoulder, wrist - elbow
-        assert -upper[2] / np.linalg.norm(upper) == pytest.approx(elbow_drop, abs=0.03)
-        assert -fore[2] / np.linalg.norm(fore) == pytest.approx(wrist_drop, abs=0.03)
-        mirrored = found[7] * [-1, 1, 1]
-        assert np.allclose(wrist, mirrored, atol=1e-3)
-
-
-def test_an_unknown_kind_names_the_known_ones():
-    with pytest.raises(MocapError, match="A, T, elbows"):
-        pose_of_kind(small_body("performer"), "Y")
-
-
 def test_centre_and_height_of_a_standing_body():
     body, truth = standing("performer", "A", 1.0, 1.0)
     cameras = small_studio()

@@ -72,7 +72,7 @@ def complaint(folder: Path, text: str, **options) -> str:
 def test_the_least_that_a_take_needs_is_enough(folder):
     take = taken(folder, MINIMAL)
     assert (take.name, take.fps, take.frames) == ("take", 15, None)
-    assert (take.initial_pose.frames, take.initial_pose.kind) == (None, "A")
+    assert (take.initial_pose.frames, take.initial_pose.kind) == (None, None)
     assert take.cameras.calibration == folder / "calibration.toml"
     assert take.footage.silhouettes == str(folder / "masks/{camera}/{frame:06d}.png")
     assert (take.performer.body, take.performer.height_m, take.floor) == ("performer", None, 0)
