@@ -38,7 +38,10 @@ def test_a_body_that_faces_the_wrong_way_is_turned_about(hunted, turned):
     found = faced(hunt, start, still)
     assert off_by(found, truth) < 5
     assert found.margin > facing.CLEARLY and found.told_by == "the silhouettes"
-    assert found.words.startswith("Facing the other way the performer would fit") and "worse" in found.words
+    assert (
+        found.words.startswith("Facing the other way the performer would fit")
+        and "worse" in found.words
+    )
 
 
 @pytest.mark.parametrize("forwards", [True, False])
