@@ -12,6 +12,9 @@ from ..bench.energy_files import write_energy_files
 from ..bench.energy_report import as_dict
 from ..bench.markdown import whole_report
 from ..bench.prototypes import are_in
+from ..bench.shape import shape_figures
+from ..bench.shape_report import as_dict as shape_as_dict
+from ..bench.shape_report import shape_report, write_shape_files
 from ..bench.skeleton import SkeletonSettings, skeleton_figures
 from ..bench.skeleton_report import as_dict as skeleton_as_dict
 from ..bench.skeleton_report import skeleton_report, write_skeleton_files
@@ -34,12 +37,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "topic", choices=tuple(_TOPICS),
         help="energy: Tables 1 and 2 of the 2003 paper; tracking: errors and speed of the "
-        "trackers with takes whose motion is known, undisturbed and disturbed; skeleton: errors "
-        "of the joints that the contour shows in the initial pose",
+        "trackers with takes whose motion is known, undisturbed and disturbed; shape: the "
+        "performer's own shape against the template scaled as a whole, with such takes; skeleton: "
+        "errors of the joints that the contour shows in the initial pose",
     )  # fmt: skip
     parser.add_argument(
         "takes", nargs="*", type=Path, metavar="TAKE.toml",
-        help="for tracking: takes with a truth.npz beside each (default: the sample walk)",
+        help="for tracking and shape: takes with a truth.npz beside each "
+        "(default: the sample walk)",
     )  # fmt: skip
     parser.add_argument("--json", type=Path, metavar="FILE", help="write all figures there")
     parser.add_argument(
@@ -98,15 +103,25 @@ def _skeleton(arguments: argparse.Namespace) -> Measured:
     )
 
 
+def _shape(arguments: argparse.Namespace) -> Measured:
+    takes = tuple(arguments.takes) or TrackingSettings().takes
+    figures = shape_figures(takes, arguments.console)
+    return shape_report(figures), shape_as_dict(figures), partial(write_shape_files, figures)
+
+
 _TOPICS: dict[str, Callable[[argparse.Namespace], Measured]] = {
     "energy": _energy,
     "tracking": _tracking,
+    "shape": _shape,
     "skeleton": _skeleton,
 }
 
 
+_WITH_TAKES = ("tracking", "shape")
+
+
 def _check(arguments: argparse.Namespace) -> None:
-    if arguments.topic != "tracking" and arguments.takes:
+    if arguments.topic not in _WITH_TAKES and arguments.takes:
         raise MocapError(
             f"bench {arguments.topic} needs no take", "leave it out", file=arguments.takes[0]
         )

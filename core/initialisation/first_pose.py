@@ -25,6 +25,7 @@ from .facing import Way, faced
 from .hunt import Hunt, all_round, stood
 from .own_shape import in_own_shape
 from .pose_kinds import pose_of_kind
+from .shape_fit import ShapeFit
 from .standing import body_centre, row_span, standing_height
 
 _log = logging.getLogger(__name__)
@@ -66,12 +67,14 @@ class FirstFit:
         pose: (D,) the fitted initial pose.
         iou: (V,) intersection over union in each view.
         notes: what a user should know, sentences.
+        shape: how the performer's shape was found; None where it was not sought.
     """
 
     body: Body
     pose: np.ndarray
     iou: np.ndarray
     notes: tuple[str, ...]
+    shape: ShapeFit | None = None
 
 
 def initialised(
@@ -149,10 +152,12 @@ def measured(
     """
     told = ""
     if request.own_shape:
-        start = (first.body, cameras, frames, first.pose, make_evaluator, request.height_m)
-        body, pose, words = in_own_shape(*start)
-        iou = frame_scores(make_evaluator(body, cameras), pose, frames[0]).iou
-        first, told = replace(first, body=body, pose=pose, iou=iou), f"; {words}"
+        poses = np.tile(first.pose, (len(frames), 1))
+        start = (first.body, cameras, frames, poses, make_evaluator, request.height_m)
+        own = in_own_shape(*start)
+        iou = frame_scores(make_evaluator(own.body, cameras), own.pose, frames[0]).iou
+        first = FirstFit(own.body, own.pose, iou, first.notes, own.fit)
+        told = f"; {own.note}"
     _log.info("first pose: IoU by camera %s", first.iou.round(3).tolist())
     note = f"The performer is {rest_height(first.body):.2f} m tall{told}."
     return replace(first, notes=(note, *first.notes))

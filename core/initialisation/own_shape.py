@@ -2,6 +2,7 @@
 
 import logging
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -13,44 +14,70 @@ from ..energy.weight_maps import xor_weight_maps
 from ..fitting.contour import ContourTracker
 from ..fitting.tracker import EvaluatorFactory, Past
 from ..silhouettes.silhouette import Silhouette
-from .shape_fit import fitted_shape
+from .shape_fit import ShapeFit, fitted_shape
 
 _log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True, eq=False)
+class OwnShape:
+    """A body for the performer.
+
+    Attributes:
+        body: in the shape that explains the silhouettes best.
+        pose: (D,) in the first of the frames.
+        fit: what was found of the shape.
+        note: a sentence on it.
+    """
+
+    body: Body
+    pose: np.ndarray
+    fit: ShapeFit
+    note: str
 
 
 def in_own_shape(
     body: Body,
     cameras: tuple[Camera, ...],
     frames: Sequence[tuple[Silhouette, ...]],
-    pose: np.ndarray,
+    poses: np.ndarray,
     make_evaluator: EvaluatorFactory,
     height_m: float | None = None,
-) -> tuple[Body, np.ndarray, str]:
-    """The body in the shape that the frames show, its pose (D,) in the first, and a note.
+) -> OwnShape:
+    """The body in the shape that the frames show.
 
-    Where the silhouettes are explained no better by that, the body stays as it is.
+    Where the silhouettes are explained no better by that, it stays as it is.
 
     Args:
         body: at about the performer's scale.
         cameras: V of them.
-        frames: V silhouettes each; all show about the same pose.
-        pose: (D,) the pose.
+        frames: F of them, V silhouettes each.
+        poses: (F, D) about those that they show.
         make_evaluator: of a body in cameras.
         height_m: what the performer is known to be tall; None where the shape tells.
     """
     before = ContourTracker(body, cameras, make_evaluator)
-    poses = np.stack([before.fit(frame, Past.still(pose)).pose for frame in frames])
+    poses = _fitted(before, frames, poses)
     found = fitted_shape(body, cameras, frames, poses, make_evaluator)
-    shaped, last = found.body, found.poses
+    shaped = found.body
     if height_m is not None:
         shaped = scaled(shaped, height_m / rest_height(shaped))
     after = ContourTracker(shaped, cameras, make_evaluator)
-    last = np.stack([after.fit(f, Past.still(p)).pose for f, p in zip(frames, last, strict=True)])
+    last = _fitted(after, frames, found.poses)
     plain, own = _energy(before, frames, poses), _energy(after, frames, last)
     _log.info("shape: %d px differ, %d with the template's proportions", own, plain)
     if own >= plain:
-        return body, poses[0], "the template's own proportions explain the silhouettes best"
-    return shaped, last[0], f"the performer's own shape leaves {1 - own / plain:.0%} fewer px apart"
+        note = "the template's own proportions explain the silhouettes best"
+        return OwnShape(body, poses[0], found, note)
+    note = f"the performer's own shape leaves {1 - own / plain:.0%} fewer px apart"
+    return OwnShape(shaped, last[0], found, note)
+
+
+def _fitted(
+    tracker: ContourTracker, frames: Sequence[tuple[Silhouette, ...]], poses: np.ndarray
+) -> np.ndarray:
+    pairs = zip(frames, poses, strict=True)
+    return np.stack([tracker.fit(frame, Past.still(pose)).pose for frame, pose in pairs])
 
 
 def _energy(

@@ -58,6 +58,7 @@ class ShapeFit:
     """A body fitted to F frames.
 
     Attributes:
+        template: what was begun with.
         body: the performer's.
         poses: (F, D).
         model: of the shape's S factors.
@@ -65,6 +66,7 @@ class ShapeFit:
         deviations: (S,) how uncertain they are, standard deviations.
     """
 
+    template: Body
     body: Body
     poses: np.ndarray
     model: ShapeModel
@@ -110,7 +112,7 @@ class _Search:
         make_evaluator: EvaluatorFactory,
         settings: ShapeSettings,
     ):
-        self._model, self._settings = ShapeModel(body), settings
+        self._template, self._model, self._settings = body, ShapeModel(body), settings
         self._make = lambda body: make_evaluator(body, cameras)
         self._evaluator = self._make(body)
         self._poses = [np.array(pose, float) for pose in poses]
@@ -130,7 +132,7 @@ class _Search:
         """What was found."""
         deviations = np.sqrt(np.diag(np.linalg.inv(self._matrix)))
         body, poses = self._evaluator.body, np.stack(self._poses)
-        return ShapeFit(body, poses, self._model, self._logs, deviations)
+        return ShapeFit(self._template, body, poses, self._model, self._logs, deviations)
 
     def step(self, reach_m: float) -> float:
         """Moves the poses, then all together; returns the largest change of a logarithm."""

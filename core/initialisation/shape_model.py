@@ -94,6 +94,15 @@ class ShapeModel:
     def __len__(self) -> int:
         return len(self.factors)
 
+    def bones(self, body: Body) -> dict[int, float]:
+        """Index of each factor of a bone's length or an end's size -> its metres in ``body``."""
+        lengths = np.linalg.norm(body.tails, axis=1)
+        return {
+            factor: float(lengths[joint])
+            for joint, factor in enumerate(self._bones.tolist())
+            if factor >= 0 and lengths[joint] > 0
+        }
+
     def changed(self, body: Body, logs: np.ndarray) -> Body:
         """The body with its factors multiplied by exp(``logs``), (S,).
 
@@ -187,16 +196,16 @@ class ShapeModel:
 
     def _bone(self, body: Body, joint: int) -> int:
         """Index of the factor along a joint's bone, or of its whole; -1 where it has no bone."""
-        name = body.joint_names[joint]
+        name = _unsided(_segment_of(body, joint))
         if any(surface.skin is not None for surface in body.surfaces):
             return self._factor("size", "size", "", _SIZE)
         if self._whole[joint]:
-            return self._factor(f"{_unsided(name)} size", "size", "", _SIZE)
+            return self._factor(f"{name} size", "size", "", _SIZE)
         if not body.tails[joint].any():
             return -1
         limb = _limb_of(body, joint)
         deviation = _LENGTH if limb else _SPINE
-        return self._factor(f"{_unsided(name)} length", "length", limb, deviation)
+        return self._factor(f"{name} length", "length", limb, deviation)
 
     def _place(self, body: Body, joint: int) -> int:
         """Index of the factor of how far a joint lies from its parent's bone; -1 where on it."""
@@ -251,6 +260,12 @@ def _limb_of(body: Body, joint: int) -> str:
         if part.role == "limb" and joint in body.segment_joints[list(part.segments)]:
             return _unsided(part.name)
     return ""
+
+
+def _segment_of(body: Body, joint: int) -> str:
+    """Name of the first segment that a joint carries, else its own."""
+    carried = np.flatnonzero(body.segment_joints == joint)
+    return body.segment_names[carried[0]] if len(carried) else body.joint_names[joint]
 
 
 def _unsided(name: str) -> str:

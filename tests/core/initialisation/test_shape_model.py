@@ -31,7 +31,7 @@ def between(body, *names):
 
 
 def test_a_bone_made_longer_moves_what_hangs_on_it_on_both_sides():
-    longer = MODEL.changed(BODY, logs_of(hip_length=np.log(1.2)))
+    longer = MODEL.changed(BODY, logs_of(thigh_length=np.log(1.2)))
     for side in ("left", "right"):
         assert between(longer, f"{side}_hip", f"{side}_knee") == pytest.approx(
             1.2 * between(BODY, f"{side}_hip", f"{side}_knee")
