@@ -1,4 +1,8 @@
-"""Front or back, told by the feet: toes reach further from the ankles than heels do."""
+"""Front or back, told by the feet: toes reach further from the shanks than heels do.
+
+In any view but a frontal one, the feet stick out further on the side that the performer looks to,
+the more so the more it is a view from the side.
+"""
 
 from collections.abc import Sequence
 
@@ -6,45 +10,41 @@ import numpy as np
 
 from .seen_view import SeenView
 
-_REACHES = (0.07, 0.085, 0.1)
-"""From the ankles, in heights of the performer: beyond the heels, within the toes."""
-_HEIGHTS = (0.01, 0.02, 0.03)
-"""Above the floor, likewise."""
-_LEAST_ASIDE = 0.4
-_LEAST_MARGIN = 0.05
+_FEET, _SHANKS = (0.0, 0.1), (0.16, 0.26)
+"""Heights of feet and shanks above the lowest point, seen from so little above as allowed."""
+_STEEPEST = 0.6
+"""Sine of the elevation up to which they are apart in a picture."""
+_LEAST_ASIDE = 0.3
+"""Sine of the angle to the frontal direction, from which on a view tells."""
+_LEAST = 0.015
+"""By which toes have to reach further than heels, as a share of the height, to tell."""
 
 
-def facing_sign(
-    views: Sequence[SeenView], ankles: np.ndarray, front: np.ndarray, floor: float
-) -> int:
+def facing_sign(views: Sequence[SeenView], centre: np.ndarray, front: np.ndarray) -> int:
     """1 where the toes point along ``front``, -1 where against it, 0 where no view tells.
 
     Args:
         views: of one frame.
-        ankles: (2, 3) world metres; their height does not matter.
-        front: (3,) horizontal direction, as long as the performer is tall.
-        floor: its height in the world.
+        centre: (3,) the middle of the performer, world metres.
+        front: (3,) horizontal unit direction.
     """
-    feet = ankles * [1.0, 1.0, 0.0] + [0.0, 0.0, floor]
-    ahead, behind = [], []
+    reaches, weights = [], []
     for view in views:
-        if abs(view.right @ front) < _LEAST_ASIDE * np.linalg.norm(front):
-            continue
-        ahead.append(_shown(view, feet, front))
-        behind.append(_shown(view, feet, -front))
-    if not ahead:
+        way = view.camera.centre - centre
+        sideways = float(view.right @ front)
+        level = abs(way[2]) <= _STEEPEST * np.linalg.norm(way)
+        if view.whole and level and abs(sideways) >= _LEAST_ASIDE:
+            reaches.append(np.sign(sideways) * _reach_to_the_right(view))
+            weights.append(abs(sideways))
+    if not weights:
         return 0
-    margin = float(np.mean(ahead) - np.mean(behind))
-    return int(np.sign(margin)) if abs(margin) >= _LEAST_MARGIN else 0
+    reach = float(np.average(reaches, weights=weights))
+    return int(np.sign(reach)) if abs(reach) >= _LEAST else 0
 
 
-def _shown(view: SeenView, feet: np.ndarray, way: np.ndarray) -> float:
-    """Share of the places where feet (2, 3) along ``way`` would be that the view has filled."""
-    up = np.array([0.0, 0.0, np.linalg.norm(way)])
-    shifts = np.array([reach * way + height * up for reach in _REACHES for height in _HEIGHTS])
-    px = view.camera.project((feet[:, None] + shifts).reshape(-1, 3))
-    columns, rows = np.nan_to_num(px, nan=-1.0).round().astype(int).T
-    height, width = view.silhouette.foreground.shape
-    within = (columns >= 0) & (columns < width) & (rows >= 0) & (rows < height)
-    shown = view.silhouette.foreground[np.where(within, rows, 0), np.where(within, columns, 0)]
-    return float((shown & within).mean())
+def _reach_to_the_right(view: SeenView) -> float:
+    """How much further the feet reach beyond the shanks on the right than on the left, heights."""
+    assert view.outline is not None
+    across, heights = view.outline.points.T
+    feet, shanks = (across[(heights >= a) & (heights <= b)] for a, b in (_FEET, _SHANKS))
+    return float((feet.max() - shanks.max()) - (shanks.min() - feet.min()))

@@ -87,6 +87,7 @@ def contour_skeleton(
         _shown(cameras, silhouettes, kind, picture, settings)
         for silhouettes, picture in zip(frames, pictures, strict=True)
     ]
+    shown = _facing_alike(shown)
     if not any(one.joints for one in shown):
         raise MocapError(
             f'the contours do not show the initial pose "{kind}": {shown[0].fault}',
@@ -94,6 +95,19 @@ def contour_skeleton(
             "other initial_pose frames or another kind",
         )
     return _skeleton(shown, len(cameras), kind)
+
+
+def _facing_alike(shown: list[_Shown]) -> list[_Shown]:
+    """Without the joints of frames in which the performer seems to look the other way."""
+    lefts = [one.joints.heading.left for one in shown if one.joints]
+    usual = np.sum(lefts, axis=0)
+
+    def kept(one: _Shown) -> _Shown:
+        if one.joints is None or one.joints.heading.left @ usual > 0:
+            return one
+        return replace(one, joints=None, fault="the performer seems to look the other way")
+
+    return [kept(one) for one in shown]
 
 
 def check_kind(kind: str) -> None:
@@ -118,7 +132,7 @@ def performer_in(
     height = settings.height_m
     if height is None:
         height = standing_height(cameras, silhouettes, centre, settings.floor)
-    return Performer(centre, height, settings.floor)
+    return Performer(centre, height)
 
 
 def seen_views(
@@ -146,7 +160,7 @@ def _shown(
     if performer is None:
         return _Shown(None, nowhere, "fewer than two views show anybody")
     views = seen_views(cameras, silhouettes, performer, (kind, settings.mode))
-    heading = heading_of(views, performer.centre, performer.height, performer.floor)
+    heading = heading_of(views, performer.centre)
     if heading is None:
         labelled = sum(view.joints is not None for view in views)
         fault = f"{labelled} of {len(views)} views show it, and no two agree; {reasons(views)}"
@@ -215,7 +229,7 @@ def _notes(shown: Sequence[_Shown], usable: Sequence[_Shown], kind: str) -> list
     headings: list[Heading] = [one.joints.heading for one in usable if one.joints]
     if not all(heading.told_by_toes for heading in headings):
         notes.append(
-            "no view from the side tells front from back: the performer is taken to face the "
+            "no view tells front from back by the feet: the performer is taken to face most of the "
             "cameras that show the pose"
         )
     if kind != BENT:

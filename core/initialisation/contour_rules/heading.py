@@ -2,8 +2,7 @@
 
 A silhouette looks much the same from in front and from behind. Headings are tried all round: with
 the right one, the joints of all views that it calls frontal meet in the world, and the line from
-right to left is where the heading says. Front and back are told apart by the toes, which reach
-further from the ankles than the heels do, in views from the side.
+right to left is where the heading says. Front and back are told apart by the feet.
 """
 
 from collections.abc import Sequence
@@ -75,17 +74,8 @@ def joint_px(view: SeenView, heading: Heading, name: str, side: int | None) -> n
     return view.upright.to_px(places)
 
 
-def heading_of(
-    views: Sequence[SeenView], centre: np.ndarray, height: float, floor: float
-) -> Heading | None:
-    """How the performer stands, who is ``height`` m tall; None where no two views agree.
-
-    Args:
-        views: of one frame.
-        centre: (3,) the middle of the performer, world metres.
-        height: the performer's, metres.
-        floor: its height in the world.
-    """
+def heading_of(views: Sequence[SeenView], centre: np.ndarray) -> Heading | None:
+    """How the performer about ``centre`` (3,) stands; None where no two views agree."""
     angles = np.arange(_HEADINGS) * np.pi / _HEADINGS
     starts = [np.array([np.cos(a), np.sin(a), 0.0]) for a in angles]
     # headings that call the same views frontal, and the same side left, end alike
@@ -94,10 +84,7 @@ def heading_of(
     if not found:
         return None
     best = min(found, key=lambda heading: heading.miss)
-    pairs = _pairs(views, best, centre)
-    assert pairs is not None
-    ankles = pairs[_SIDES.index("ankles")]
-    sign = facing_sign(views, ankles, best.front * height, floor)
+    sign = facing_sign(views, centre, best.front)
     if sign:
         return replace(best, left=sign * best.left, told_by_toes=True)
     towards = sum(

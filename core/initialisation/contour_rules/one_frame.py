@@ -19,12 +19,10 @@ class Performer:
     Attributes:
         centre: (3,) the middle of the body, world metres.
         height: metres.
-        floor: height of the floor in the world.
     """
 
     centre: np.ndarray
     height: float
-    floor: float
 
 
 @dataclass(frozen=True, eq=False)

@@ -83,25 +83,15 @@ class Meeting:
 
 
 def meeting(rays: Rays, planes: Planes | None = None) -> Meeting:
-    """Where at least two rays meet, or one ray and a plane.
-
-    Of three rays and more, the reweighting begins with all of them and with all but each one, and
-    the best end counts: a wrong ray may draw the point so far that others look wrong.
-    """
-    count = len(rays.weights)
-    starts = np.ones((1, count))
-    if count > 2:
-        starts = np.concatenate([starts, 1.0 - np.eye(count)])
-    weights, points = starts * rays.weights, np.zeros((len(starts), 3))
-    for _ in range(_REWEIGHTINGS if count > 2 else 1):
-        points = _nearest(rays, weights, planes)
-        squares = (_apart(rays, points) / _USUAL_M) ** 2
-        weights = rays.weights / (1.0 + squares) if count > 2 else weights
-    best = int(_costs(rays, points, planes).argmin())
-    point, weights = points[best], weights[best]
-    gap = 2 * np.sqrt(np.average(_apart(rays, point[None])[0] ** 2, weights=weights))
-    seen, _ = _normal_equations(rays, weights[None], planes)
-    depth = np.linalg.eigvalsh(seen[0] / weights.sum())[0]
+    """Where at least two rays meet, or one ray and a plane."""
+    weights = rays.weights
+    point = _nearest(rays, weights, planes)
+    for _ in range(_REWEIGHTINGS if len(weights) > 2 else 0):
+        weights = rays.weights / (1.0 + (_apart(rays, point) / _USUAL_M) ** 2)
+        point = _nearest(rays, weights, planes)
+    gap = 2 * np.sqrt(np.average(_apart(rays, point) ** 2, weights=weights))
+    seen, _ = _normal_equations(rays, weights, planes)
+    depth = np.linalg.eigvalsh(seen / weights.sum())[0]
     return Meeting(np.round(point, 6), float(gap), float(depth))
 
 
@@ -111,33 +101,22 @@ def ray(camera: Camera, px: np.ndarray) -> np.ndarray:
     return way / np.linalg.norm(way)
 
 
-def _apart(rays: Rays, points: np.ndarray) -> np.ndarray:
-    """(S, n) metres from points (S, 3) to the rays."""
-    ways = points[:, None] - rays.centres
-    return np.linalg.norm(np.einsum("vab,svb->sva", rays.across, ways), axis=2)
-
-
-def _costs(rays: Rays, points: np.ndarray, planes: Planes | None) -> np.ndarray:
-    """(S,) what the reweighting makes small, of points (S, 3)."""
-    costs = (rays.weights * np.log1p((_apart(rays, points) / _USUAL_M) ** 2)).sum(axis=1)
-    if planes is None:
-        return costs
-    misses = (points @ planes.normals.T - planes.offsets) / _USUAL_M
-    return costs + planes.weight * (misses**2).sum(axis=1)
+def _apart(rays: Rays, point: np.ndarray) -> np.ndarray:
+    """(n,) metres from a point (3,) to the rays."""
+    return np.linalg.norm(np.einsum("vab,vb->va", rays.across, point - rays.centres), axis=1)
 
 
 def _nearest(rays: Rays, weights: np.ndarray, planes: Planes | None) -> np.ndarray:
-    """(S, 3) points of the least squares with weights (S, n)."""
-    left, right = _normal_equations(rays, weights, planes)
-    return np.einsum("sab,sb->sa", np.linalg.pinv(left, hermitian=True), right)
+    """(3,) the point of the least squares."""
+    return np.linalg.lstsq(*_normal_equations(rays, weights, planes), rcond=None)[0]
 
 
 def _normal_equations(
     rays: Rays, weights: np.ndarray, planes: Planes | None
 ) -> tuple[np.ndarray, np.ndarray]:
-    """(S, 3, 3) and (S, 3) of the least squares with weights (S, n)."""
-    weighted = weights[:, :, None, None] * rays.across
-    left, right = weighted.sum(axis=1), np.einsum("svab,vb->sa", weighted, rays.centres)
+    """(3, 3) and (3,) of the least squares."""
+    weighted = weights[:, None, None] * rays.across
+    left, right = weighted.sum(axis=0), np.einsum("vab,vb->a", weighted, rays.centres)
     if planes is None:
         return left, right
     normals = planes.weight * planes.normals

@@ -1,7 +1,7 @@
 """What one view of one frame shows: its outline, its joints, or why there are none."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -25,6 +25,7 @@ class SeenView:
         silhouette: the main patch alone.
         upright: its turned picture; None where the view shows nobody.
         outline: None where there is none.
+        whole: whether the outline is that of the whole performer.
         joints: None where the view does not show what the rules need.
         reason: why not, in words; empty where it does.
     """
@@ -33,6 +34,7 @@ class SeenView:
     silhouette: Silhouette
     upright: Upright | None
     outline: Outline | None
+    whole: bool
     joints: Labelled | None
     reason: str
 
@@ -52,23 +54,27 @@ def seen_view(
     patch = main_patch(silhouette)
     alone = Silhouette(patch, silhouette.observed)
     if not patch.any():
-        return SeenView(camera, alone, None, None, None, "shows nobody")
+        return SeenView(camera, alone, None, None, False, None, "shows nobody")
     upright = Upright.of(alone, image_up(camera, centre))
-    if upright.height_px < _SMALLEST_PX:
-        reason = f"shows the performer only {upright.height_px:.0f} px tall"
-        return SeenView(camera, alone, upright, None, None, reason)
     contour = traced_contour(Silhouette(patch, np.ones_like(patch)), upright)
     outline = Outline.of(contour)
-    if np.ptp(contour[:, 1]) < _WHOLE:
-        return SeenView(camera, alone, upright, outline, None, "shows the performer in pieces")
-    if _cut_off(alone):
+    if upright.height_px < _SMALLEST_PX:
+        reason = f"shows the performer only {upright.height_px:.0f} px tall"
+    elif np.ptp(contour[:, 1]) < _WHOLE:
+        reason = "shows the performer in pieces"
+    elif _cut_off(alone):
         reason = "shows only a part of the performer, who reaches out of what is observed"
-        return SeenView(camera, alone, upright, outline, None, reason)
+    else:
+        return _labelled_view(SeenView(camera, alone, upright, outline, True, None, ""), rules)
+    return SeenView(camera, alone, upright, outline, False, None, reason)
+
+
+def _labelled_view(view: SeenView, rules: tuple[str, str]) -> SeenView:
+    assert view.outline is not None
     try:
-        joints = labelled(outline, *rules)
+        return replace(view, joints=labelled(view.outline, *rules))
     except Unlabelled as reason:
-        return SeenView(camera, alone, upright, outline, None, str(reason))
-    return SeenView(camera, alone, upright, outline, joints, "")
+        return replace(view, reason=str(reason))
 
 
 def _cut_off(silhouette: Silhouette) -> bool:

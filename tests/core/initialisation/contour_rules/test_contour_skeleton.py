@@ -72,6 +72,21 @@ def test_the_joints_of_a_known_body_are_found(kind):
     assert found.left[0] == pytest.approx([1, 0, 0], abs=0.1)
 
 
+def test_hips_and_ankles_of_both_sides_and_the_measures_are_told():
+    found = contour_skeleton(studio(), (seen("A", studio()),) * 2, "A")
+    known = dict(
+        zip(POINT_NAMES, points(small_body("performer"), standing("A")[None])[0], strict=True)
+    )
+    for name, places in (("hip", found.hips), ("ankle", found.ankles)):
+        for side, which in enumerate(("left", "right")):
+            assert np.linalg.norm(places[0, side] - known[f"{which}_{name}"]) < 0.05
+    # the mean of both sides, of joints within the 35 mm above
+    upper = np.linalg.norm(known["left_elbow"] - known["left_shoulder"])
+    assert found.measures["arm"].mean == pytest.approx(upper, abs=0.05)
+    assert found.measures["arm"].spread == pytest.approx(0.0, abs=1e-9)
+    assert found.shown.all() and found.views.shape == (2, 8)
+
+
 def test_literal_extremes_find_the_neck_and_the_back_of_a_clean_outline():
     literal = ContourSettings(mode="literal")
     found = contour_skeleton(studio(), (seen("elbows", studio()),), "elbows", settings=literal)
@@ -84,7 +99,24 @@ def test_two_cameras_in_front_are_enough():
     found = contour_skeleton(pair[:2], (seen("elbows", pair[:2]),), "elbows", settings=KNOWN_HEIGHT)
     # an angle of 30° leaves depth four times as unsure as the rest
     assert max(errors(found, standing("elbows")).values()) < 0.1
-    assert any("taken to face the cameras" in note for note in found.notes)
+
+
+def test_two_cameras_behind_see_the_left_side_on_the_left():
+    pair = ring(Ring(8, heights=(1.0,), first_angle_deg=157.5, size=(320, 240), focal_px=250.0))
+    found = contour_skeleton(pair[:2], (seen("T", pair[:2]),), "T", settings=KNOWN_HEIGHT)
+    assert max(errors(found, standing("T")).values()) < 0.1
+    assert not any("face" in note for note in found.notes)
+
+
+def test_where_no_view_tells_front_from_back_the_performer_faces_the_cameras():
+    low, high = (
+        ring(Ring(1, heights=(height,), size=(320, 240), focal_px=250.0))[0]
+        for height in (0.8, 2.6)
+    )
+    above = low, replace(high, name="cam_02")
+    found = contour_skeleton(above, (seen("A", above),), "A", settings=KNOWN_HEIGHT)
+    assert found.left[0] == pytest.approx([1, 0, 0], abs=0.05)
+    assert any("taken to face most of the cameras" in note for note in found.notes)
 
 
 def test_views_from_the_side_tell_the_depth_that_cameras_face_to_face_cannot():
@@ -103,6 +135,16 @@ def test_left_and_right_do_not_depend_on_which_way_the_performer_looks(degrees):
     turned[small_body("performer").dofs.names.index("root_yaw")] = np.radians(degrees)
     found = contour_skeleton(studio(), (filmed(small_body("performer"), studio(), turned),), "A")
     assert max(errors(found, turned).values()) < 0.06
+
+
+def test_a_frame_that_seems_to_show_the_back_is_told_apart():
+    cameras, body = studio(), small_body("performer")
+    behind = standing("A")
+    behind[body.dofs.names.index("root_yaw")] = np.pi
+    frames = (seen("A", cameras), filmed(body, cameras, behind), seen("A", cameras))
+    found = contour_skeleton(cameras, frames, "A")
+    assert found.shown.tolist() == [True, False, True]
+    assert "the other way" in found.faults[1]
 
 
 def test_a_camera_on_its_side_changes_nothing():
@@ -167,13 +209,20 @@ def test_a_frame_that_does_not_show_the_pose_is_told_apart(values):
     assert found.measures["trunk"].spread == 0
 
 
-def test_a_performer_half_out_of_the_picture_is_not_labelled_there():
+@pytest.mark.parametrize("hidden", ["beyond the picture", "under an ignore mask"])
+def test_a_performer_whose_feet_are_not_seen_is_not_labelled_there(hidden):
     cameras = studio()
     silhouettes = list(seen("A", cameras))
     for view in (0, 3):
-        foreground = np.zeros_like(silhouettes[view].foreground)
-        foreground[:-90] = silhouettes[view].foreground[90:]
-        silhouettes[view] = Silhouette(foreground, np.ones_like(foreground))
+        foreground = silhouettes[view].foreground.copy()
+        observed = np.ones_like(foreground)
+        lowest = int(np.flatnonzero(foreground.any(axis=1))[-1])
+        if hidden == "beyond the picture":
+            down = len(foreground) - lowest + 3
+            foreground[down:], foreground[:down] = foreground[:-down].copy(), False
+        else:
+            observed[lowest - 4 :] = False
+        silhouettes[view] = Silhouette(foreground & observed, observed)
     found = contour_skeleton(cameras, (tuple(silhouettes),), "A", settings=KNOWN_HEIGHT)
     assert not found.views[0, [0, 3]].any() and found.views[0].sum() == 2
 

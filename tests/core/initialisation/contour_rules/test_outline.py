@@ -82,6 +82,7 @@ def test_a_turned_picture_gives_the_same_upright_contour(quarter_turns):
     # the foot of the L points to the right
     low = contour[contour[:, 1] < 0.1, 0]
     high = contour[contour[:, 1] > 0.5, 0]
+    assert high.mean() == pytest.approx(0.0, abs=0.05)
     assert np.ptp(low) == pytest.approx(0.5, abs=0.02)
     assert low.max() - high.max() == pytest.approx(1 / 3, abs=0.02)
 

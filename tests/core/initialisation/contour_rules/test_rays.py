@@ -51,3 +51,22 @@ def test_a_plane_says_where_along_rays_that_face_each_other():
     known = meeting(facing, Planes(np.array([[0.0, 1.0, 0.0]]), np.array([0.2])))
     assert known.point == pytest.approx([0.1, 0.2, 1.0])
     assert known.depth > 0.3
+
+
+def test_two_bad_rays_of_six_count_the_less_the_further_off_they_are():
+    point = (0.3, -0.2, 1.4)
+    good = through(point, (4, 0, 1), (0, -4, 1.5), (-4, 1, 1), (1, 4, 2))
+    bad = (*through((0.3, 0.3, 1.1), (3, -3, 1)), *through((0.3, 0.1, 1.6), (-3, -3, 1)))
+    found = meeting(rays(*good, *bad))
+    assert np.linalg.norm(found.point - point) < 0.005
+
+
+def test_planes_say_which_of_two_rays_is_wrong_where_the_others_face_each_other():
+    point = (0.0, 0.0, 1.0)
+    facing = through(point, (0.0, -4, 1), (0.0, 4, 1))
+    # the one crosses them at the point, the other 0.2 m behind it
+    across = (*through(point, (3, -3, 1)), *through((0.0, 0.2, 1.0), (-3, 3, 1)))
+    for behind in (0.0, 0.2):
+        sides = Planes(np.array([[0.0, 1.0, 0.0]]), np.array([behind]), 0.1)
+        found = meeting(rays(*facing, *across), sides)
+        assert found.point == pytest.approx([0.0, behind, 1.0], abs=0.02)
