@@ -1,20 +1,15 @@
 """From a take to a motion and its files: the whole story on one screen."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import asdict, dataclass, field, replace
-from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 
-from .errors import MocapError
+from .beginning import take_begun
 from .files import made_folder
 from .fitting.search import Search
-from .initialisation.first_pose import FirstFit, initialised
-from .initialisation.plausibility import check_first_fit
-from .initialisation.sightings import Footage
-from .initialisation.unaided import found_unaided
 from .progress import Progress
 from .rendering.choice import BEST, Choice
 from .rendering.detail import OUTLINE_PX
@@ -33,15 +28,8 @@ from .results.writing import (
     with_overlay,
     write_results,
 )
-from .silhouettes.silhouette import Silhouette
-from .take.first_look import check_first_look
-from .take.performer import performer_body, pose_request
 from .take.take import Take
 from .take.views import Views, open_views
-
-_MOST_INITIAL_FRAMES = 8
-Silhouettes = tuple[Silhouette, ...]
-"""One frame's, camera by camera."""
 
 
 @dataclass(frozen=True)
@@ -130,30 +118,15 @@ def fit(take: Take, request: FitRequest, progress: Progress) -> FitResult:
 
 
 def _started(take: Take, views: Views, inputs: Inputs, choice: Choice, progress: Progress) -> Start:
-    """The first pose, and what it was found from."""
-    begin = initial_frames(take, views.frames)
-    frames = begin if take.initial_pose.kind else searched_frames(begin)
-    # before they are read, as the fit may take longer than a change of theirs
-    stamps = {frame: views.stamps(frame) for frame in frames}
-    views, seen = views.reduced_and_seen(begin)
-    for note in views.notes:
-        progress.note(note)
-    looks = check_first_look(take, views, seen)
-    for note in looks:
-        progress.note(note)
-    progress.begin("first pose", 1)
-    chosen, first = _first_fit(take, views, (frames, seen), choice)
-    frames = [chosen, *(frame for frame in frames if frame != chosen)]
-    for note in first.notes:
-        progress.note(note)
+    begin = take_begun(take, views, choice, progress)
     return Start(
         inputs=inputs,
-        factors=tuple(view.reduction.factor for view in views.views),
-        frames=np.array(frames, np.int64),
-        stamps=np.stack([stamps[frame] for frame in frames]),
-        body=first.body,
-        pose=first.pose,
-        notes=(*choice.notes, *views.notes, *looks, *first.notes),
+        factors=tuple(view.reduction.factor for view in begin.views.views),
+        frames=np.array(begin.frames, np.int64),
+        stamps=begin.stamps,
+        body=begin.first.body,
+        pose=begin.first.pose,
+        notes=begin.notes,
     )
 
 
@@ -165,57 +138,3 @@ def _begun(out: Path, start: Start, progress: Progress) -> Journal:
             "--resume would have gone on with it"
         )
     return Journal.begun(out / UNFINISHED, start)
-
-
-def initial_frames(take: Take, frames: tuple[int, int]) -> tuple[int, ...]:
-    """Up to eight of the take's ``frames`` (first, last) that show the initial pose, in order.
-
-    Where the take names none, they lie all over it.
-
-    Raises:
-        MocapError: none of them does.
-    """
-    whole = frames if take.initial_pose.kind is None else (frames[0], frames[0])
-    first, last = take.initial_pose.frames or whole
-    begin, end = max(first, frames[0]), min(last, frames[1])
-    if begin > end:
-        raise MocapError(
-            f"the initial pose is in frames {first} to {last}, outside {frames[0]} to {frames[1]}",
-            "fit frames that hold it", file=take.path,
-        )  # fmt: skip
-    count = min(end - begin + 1, _MOST_INITIAL_FRAMES)
-    return tuple(int(f) for f in np.linspace(begin, end, count).round())
-
-
-def searched_frames(frames: Sequence[int]) -> Sequence[int]:
-    """Rising ``frames`` and those halfway between them, to choose an initial pose from."""
-    halfway = ((before + after) // 2 for before, after in pairwise(frames))
-    return sorted({*frames, *halfway})
-
-
-def _first_fit(
-    take: Take,
-    views: Views,
-    looked: tuple[Sequence[int], Mapping[int, Silhouettes]],
-    choice: Choice,
-) -> tuple[int, FirstFit]:
-    """The frame that the first pose is of, and that pose.
-
-    ``looked`` at are some frames, and some of what they show is seen already.
-    """
-    frames, seen = looked
-    body = performer_body(take.performer)
-    footage = Footage(
-        views.cameras, lambda f: seen.get(f) or views.silhouettes(f), views.frames, float(take.fps)
-    )
-    try:
-        wanted = replace(pose_request(take, body), way=lambda: footage.way(frames[-1]))
-        if wanted.kind is None:
-            chosen, first = found_unaided(body, footage, frames, wanted, choice)
-        else:
-            shown = tuple(seen.values())
-            chosen, first = frames[0], initialised(body, views.cameras, shown, wanted, choice)
-        notes = check_first_fit(first, views.cameras)
-    except MocapError as error:
-        raise error.about(take.path) from error
-    return chosen, replace(first, notes=(*first.notes, *notes))

@@ -17,4 +17,4 @@ def small_take(tmp_path_factory) -> Path:
 @pytest.fixture
 def quick_start(monkeypatch):
     """Fits of the small take start at once."""
-    monkeypatch.setattr("silhouette_mocap.core.pipeline.initialised", known_start)
+    monkeypatch.setattr("silhouette_mocap.core.beginning.initialised", known_start)

@@ -11,8 +11,8 @@ ROOT = Path(__file__).resolve().parents[1]
 ORDER = (
     "errors", "files", "toml", "plain", "progress", "ahead", "geometry", "pages", "cameras",
     "footage", "silhouettes", "body", "native", "energy", "rendering", "optimisers", "particles",
-    "fitting", "initialisation", "motion", "take", "checking", "results", "distributed", "pipeline",
-    "bench", "cli",
+    "fitting", "initialisation", "motion", "take", "checking", "results", "distributed",
+    "beginning", "pipeline", "performer", "bench", "cli",
 )  # fmt: skip
 BLENDER = frozenset(("bpy", "bmesh", "mathutils", "gpu", "bl_ui", "bpy_extras", "addon_utils"))
 

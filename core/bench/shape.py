@@ -11,13 +11,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..beginning import initial_frames
 from ..body.body import POINT_NAMES, Body
 from ..body.kinematics import points, rest_height
 from ..initialisation.first_pose import initialised
 from ..initialisation.further_frames import most_different
 from ..initialisation.own_shape import in_own_shape
 from ..motion.scoring import Score
-from ..pipeline import initial_frames
 from ..progress import Progress
 from ..take.performer import performer_body, pose_request
 from .machine import machine

@@ -10,13 +10,13 @@ from typing import Any
 
 import numpy as np
 
+from ..beginning import initial_frames
 from ..body.body import Body
 from ..cameras.camera import Camera
 from ..energy.evaluator import Evaluator
 from ..fitting.second_look import Course, looked_again
 from ..fitting.tracker import Tracker
 from ..fitting.tracking import FrameFit, History, track
-from ..pipeline import initial_frames
 from ..rendering.choice import MakeEvaluator
 from ..rendering.detail import with_level_for
 from ..silhouettes.silhouette import Silhouette

@@ -7,13 +7,13 @@ from pathlib import Path
 
 import numpy as np
 
+from ..beginning import initial_frames
 from ..body.body import Body
 from ..errors import MocapError
 from ..initialisation.first_pose import initialised
 from ..initialisation.sightings import Footage
 from ..initialisation.unaided import found_unaided
 from ..motion.point_track import PointTrack, read_point_track
-from ..pipeline import initial_frames
 from ..progress import Progress
 from ..rendering.choice import Choice
 from ..silhouettes.silhouette import Silhouette

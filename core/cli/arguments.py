@@ -17,12 +17,17 @@ def add_take(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
 
 
-def add_cameras_and_frames(parser: argparse.ArgumentParser) -> None:
-    """--without and --frames."""
+def add_cameras(parser: argparse.ArgumentParser) -> None:
+    """--without."""
     parser.add_argument(
         "--without", action="append", default=[], metavar="CAM",
         help="leave this camera out; may be repeated",
     )  # fmt: skip
+
+
+def add_cameras_and_frames(parser: argparse.ArgumentParser) -> None:
+    """--without and --frames."""
+    add_cameras(parser)
     parser.add_argument(
         "--frames", type=frame_range, default=(None, None), metavar="A:B",
         help="only frames A to B, inclusive; either may be left out",

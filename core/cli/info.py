@@ -3,6 +3,7 @@
 import argparse
 from pathlib import Path
 
+from ..beginning import initial_frames
 from ..checking.check import CheckRequest, TakeCheck, checked
 from ..checking.sheet import SHEET, write_check_sheet
 from ..checking.words import (
@@ -15,7 +16,6 @@ from ..checking.words import (
 )
 from ..files import check_replaceable
 from ..motion.export_request import Exporter
-from ..pipeline import initial_frames
 from ..rendering.choice import BEST, EVALUATORS
 from ..results.exporting import check_formats
 from .arguments import add_take, taken

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 DONE, INTERNAL, INPUT, LOST, INTERRUPTED = 0, 1, 2, 3, 130
 COMMANDS = {
     "fit": "track the performer of a take and write the motion",
+    "initialise": "find the body of the performer, lengths and girths, with pictures of every step",
     "masks": "write the silhouettes of a take as masks and tell how sound they look",
     "plate": "make a plate of the empty scene for each camera from its footage and further stills",
     "clean": "smooth the motion of a fit, fill gaps, hold the feet where they stand, or undo that",

@@ -182,7 +182,7 @@ def open_views(
     used = _used_names(take, without)
     _check_patterns(take)
     pattern = footage_pattern(take)
-    span = None if take.frames is None else _narrowed(take, take.frames, frames)
+    span = None if take.frames is None else narrowed(take, take.frames, frames)
     footage = {name: open_footage(pattern, name, span) for name in used}
     if len(used) < _FEWEST_CAMERAS:
         count = f"{len(used)} camera{'s' * (len(used) != 1)} left"
@@ -195,7 +195,7 @@ def open_views(
     notes = [*calibration.notes, *_opposite_notes(cameras), *_rate_notes(take, footage)]
     if span is None:
         _count(footage, progress)
-        span = _narrowed(take, _common(take, footage), frames)
+        span = narrowed(take, _common(take, footage), frames)
     return Views(views, span, tuple(notes), calibration)
 
 
@@ -356,10 +356,14 @@ def _common(take: Take, footage: dict[str, Footage]) -> tuple[int, int]:
     return firsts[late], lasts[early]
 
 
-def _narrowed(
+def narrowed(
     take: Take, whole: tuple[int, int], wanted: tuple[int | None, int | None]
 ) -> tuple[int, int]:
-    """First and last frame, inclusive, that are ``wanted`` of the ``whole`` take."""
+    """First and last frame, inclusive, that are ``wanted`` of the ``whole`` take.
+
+    Raises:
+        MocapError: they lie outside, or the first comes after the last.
+    """
     first, last = whole
     begin = first if wanted[0] is None else wanted[0]
     end = last if wanted[1] is None else wanted[1]

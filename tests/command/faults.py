@@ -125,7 +125,7 @@ def told_by(words: Words) -> Told:
             _descriptor_led_to(file),
             contextlib.redirect_stderr(file),
             contextlib.redirect_stdout(io.StringIO()),
-            patch("silhouette_mocap.core.pipeline.initialised", known_start),
+            patch("silhouette_mocap.core.beginning.initialised", known_start),
         ):
             code = main([str(word) for word in words])
         file.seek(0)

@@ -29,7 +29,7 @@ def test_output_that_nobody_reads_any_more_is_no_error(small_take):
 PAUSING = """
 import sys, time
 import numpy as np
-from silhouette_mocap.core import pipeline
+from silhouette_mocap.core import beginning
 from silhouette_mocap.core.cli import main
 from silhouette_mocap.core.fitting import passes
 from silhouette_mocap.core.initialisation.first_pose import FirstFit
@@ -42,7 +42,7 @@ def pausing(*search, track=passes.track):
         yield found
         time.sleep(1)
 
-pipeline.initialised, passes.track = started, pausing
+beginning.initialised, passes.track = started, pausing
 sys.exit(main(sys.argv[1:]))
 """
 

@@ -97,7 +97,7 @@ assert locale.localeconv()["decimal_point"] == sys.argv[1], locale.localeconv()
 from unittest.mock import patch
 from silhouette_mocap.core.cli import main
 from small_take import known_start
-with patch("silhouette_mocap.core.pipeline.initialised", known_start):
+with patch("silhouette_mocap.core.beginning.initialised", known_start):
     sys.exit(main(sys.argv[2:]))
 """
 

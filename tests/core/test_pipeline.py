@@ -9,7 +9,8 @@ from dataclasses import replace
 import cv2
 import numpy as np
 import pytest
-from silhouette_mocap.core import pipeline
+from silhouette_mocap.core import beginning
+from silhouette_mocap.core.beginning import initial_frames
 from silhouette_mocap.core.body.file import read_body, write_body
 from silhouette_mocap.core.body.kinematics import points, rest_height
 from silhouette_mocap.core.body.scaling import scaled
@@ -19,7 +20,7 @@ from silhouette_mocap.core.fitting import passes, search
 from silhouette_mocap.core.fitting.search import Search
 from silhouette_mocap.core.motion.locks import write_locks
 from silhouette_mocap.core.motion.motion import read_motion
-from silhouette_mocap.core.pipeline import FitRequest, fit, initial_frames
+from silhouette_mocap.core.pipeline import FitRequest, fit
 from silhouette_mocap.core.progress import Silence
 from silhouette_mocap.core.rendering import detail
 from silhouette_mocap.core.results.exporting import check_formats, export
@@ -63,13 +64,13 @@ def test_a_fitted_body_keeps_its_size(quick_start, small_take, tmp_path, monkeyp
     take, requests = read_take(small_take), []
     write_body(tmp_path / "actor.npz", scaled(template("sixteen_segment"), 0.9))
     take = replace(take, performer=replace(take.performer, body=tmp_path / "actor.npz"))
-    initialised = pipeline.initialised
+    initialised = beginning.initialised
 
     def watched(body, cameras, frames, request, make_evaluator):
         requests.append(request)
         return initialised(body, cameras, frames, request, make_evaluator)
 
-    monkeypatch.setattr(pipeline, "initialised", watched)
+    monkeypatch.setattr(beginning, "initialised", watched)
     fit(take, FitRequest(tmp_path / "out", frames=(0, 0)), Silence())
     assert requests[0].height_m == pytest.approx(rest_height(read_body(tmp_path / "actor.npz")))
 
@@ -127,13 +128,13 @@ def test_a_take_without_an_initial_pose_starts_from_the_frame_that_is_found(
     small_take, tmp_path, monkeypatch
 ):
     take, found = replace(read_take(small_take), initial_pose=InitialPose(kind=None)), []
-    search = pipeline.found_unaided
+    search = beginning.found_unaided
 
     def last(body, footage, frames, request, make_evaluator):
         found.append(list(frames))
         return search(body, footage, frames[-1:], request, make_evaluator)
 
-    monkeypatch.setattr(pipeline, "found_unaided", last)
+    monkeypatch.setattr(beginning, "found_unaided", last)
     progress = Notes()
     result = fit(take, FitRequest(tmp_path), progress)
     assert found == [[0, 1, 2, 3]]
@@ -147,8 +148,8 @@ def test_frames_to_choose_from_lie_all_over_the_take_and_between_them(small_take
     take = replace(read_take(small_take), initial_pose=InitialPose(kind=None))
     begin = initial_frames(take, (10, 80))
     assert begin == (10, 20, 30, 40, 50, 60, 70, 80)
-    assert pipeline.searched_frames(begin) == list(range(10, 81, 5))
-    assert pipeline.searched_frames([3]) == [3]
+    assert beginning.searched_frames(begin) == list(range(10, 81, 5))
+    assert beginning.searched_frames([3]) == [3]
 
 
 def test_no_footage_is_read_by_two_threads_at_once(quick_start, small_take, tmp_path, monkeypatch):

@@ -10,6 +10,7 @@ from html.parser import HTMLParser
 import cv2
 import numpy as np
 import pytest
+from silhouette_mocap.core.beginning import initial_frames
 from silhouette_mocap.core.cameras.arrangement import millimetres_per_pixel
 from silhouette_mocap.core.checking.check import CheckRequest, checked
 from silhouette_mocap.core.checking.estimate import Estimate
@@ -17,7 +18,7 @@ from silhouette_mocap.core.checking.footage_check import FootageCheck
 from silhouette_mocap.core.checking.sheet import write_check_sheet
 from silhouette_mocap.core.checking.words import estimate_words, readiness, take_words
 from silhouette_mocap.core.errors import MocapError
-from silhouette_mocap.core.pipeline import FitRequest, fit, initial_frames
+from silhouette_mocap.core.pipeline import FitRequest, fit
 from silhouette_mocap.core.progress import SILENCE
 from silhouette_mocap.core.rendering.native import NativeEvaluator
 from silhouette_mocap.core.silhouettes.source import SilhouetteSource

@@ -28,7 +28,7 @@ def fitted(tmp_path_factory, small_take):
     with pytest.MonkeyPatch.context() as patch:
         from small_take import known_start
 
-        patch.setattr("silhouette_mocap.core.pipeline.initialised", known_start)
+        patch.setattr("silhouette_mocap.core.beginning.initialised", known_start)
         fit(read_take(small_take), FitRequest(folder), SILENCE)
     return folder
 
