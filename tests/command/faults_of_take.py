@@ -207,6 +207,30 @@ def _(folder: Path):
     write_body(_with_body(folder), scaled(template("sixteen_segment"), 1000.0))
 
 
+def _initialise(folder: Path, *words: str) -> tuple:
+    return ("initialise", folder / "take.toml", "--out", folder.parent / "out", *words)
+
+
+@VALUES.add(
+    "a body to be found that is fitted already",
+    "take.toml: names a body that is fitted already, ",
+    'body = "performer"',
+    early=False,
+)
+def _(folder: Path):
+    write_body(_with_body(folder), template("sixteen_segment"))
+    return _initialise(folder)
+
+
+@VALUES.add(
+    "further frames for a body outside the take",
+    "frames 2 to 9 lie outside the take's, 0 to 3",
+    early=False,
+)
+def _(folder: Path):
+    return _initialise(folder, "--frames", "2:9")
+
+
 ALL_BUT_ONE = [word for i in range(2, 6) for word in ("--without", f"cam_0{i}")]
 
 
