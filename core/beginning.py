@@ -66,13 +66,15 @@ def take_begun(take: Take, views: Views, choice: Choice, progress: Progress) -> 
     frames = [chosen, *(frame for frame in frames if frame != chosen)]
     for note in first.notes:
         progress.note(note)
+    for doubt in first.doubts:
+        progress.warn(doubt)
     return Beginning(
         views=views,
         frames=frames,
         stamps=np.stack([stamps[frame] for frame in frames]),
         seen=seen,
         first=first,
-        notes=(*choice.notes, *views.notes, *looks, *first.notes),
+        notes=(*choice.notes, *views.notes, *looks, *first.notes, *first.doubts),
     )
 
 

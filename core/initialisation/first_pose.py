@@ -21,7 +21,7 @@ from ..fitting.scores import FrameScores, frame_scores
 from ..fitting.tracker import EvaluatorFactory, Past
 from ..fitting.turns import heading_dof
 from ..silhouettes.silhouette import Silhouette
-from .facing import Way, faced
+from .facing import CLEARLY, Way, faced
 from .hunt import Hunt, all_round, stood
 from .own_shape import in_own_shape
 from .pose_kinds import pose_of_kind
@@ -68,6 +68,7 @@ class FirstFit:
         iou: (V,) intersection over union in each view.
         notes: what a user should know, sentences.
         shape: how the performer's shape was found; None where it was not sought.
+        doubts: what a user must know, likewise.
     """
 
     body: Body
@@ -75,6 +76,13 @@ class FirstFit:
     iou: np.ndarray
     notes: tuple[str, ...]
     shape: ShapeFit | None = None
+    doubts: tuple[str, ...] = ()
+
+    def with_words(self, words: str, doubtful: bool) -> "FirstFit":
+        """The same with one more sentence, before the others of its sort."""
+        if doubtful:
+            return replace(self, doubts=(words, *self.doubts))
+        return replace(self, notes=(words, *self.notes))
 
 
 def initialised(
@@ -136,7 +144,8 @@ def settled(
     facing = faced(hunt, fit, request.way)
     pose = facing.fit.pose
     scores = hunt.scores(pose)
-    return FirstFit(hunt.body, pose, scores.iou, (facing.words,)), scores
+    first = FirstFit(hunt.body, pose, scores.iou, ())
+    return first.with_words(facing.words, facing.margin < CLEARLY), scores
 
 
 def measured(
@@ -156,11 +165,11 @@ def measured(
         start = (first.body, cameras, frames, poses, make_evaluator, request.height_m)
         own = in_own_shape(*start)
         iou = frame_scores(make_evaluator(own.body, cameras), own.pose, frames[0]).iou
-        first = FirstFit(own.body, own.pose, iou, first.notes, own.fit)
+        first = replace(first, body=own.body, pose=own.pose, iou=iou, shape=own.fit)
         told = f"; {own.note}"
     _log.info("first pose: IoU by camera %s", first.iou.round(3).tolist())
     note = f"The performer is {rest_height(first.body):.2f} m tall{told}."
-    return replace(first, notes=(note, *first.notes))
+    return first.with_words(note, doubtful=False)
 
 
 def _matched_extent(

@@ -166,7 +166,7 @@ def found_unaided(
     found.check()
     shown = (footage.look(found.frame),)
     first = measured(found.first, footage.cameras, shown, request, make_evaluator)
-    return found.frame, replace(first, notes=(found.words, *first.notes))
+    return found.frame, first.with_words(found.words, found.likely < _CONVINCING)
 
 
 def _likeliest_first(tried: Iterable[Sighting]) -> list[Sighting]:

@@ -26,7 +26,7 @@ from silhouette_mocap.core.rendering import detail
 from silhouette_mocap.core.results.exporting import check_formats, export
 from silhouette_mocap.core.take import InitialPose, read_take
 from silhouette_mocap.core.take.views import View
-from small_take import Notes
+from small_take import Notes, known_start
 
 
 @pytest.fixture(scope="module")
@@ -142,6 +142,21 @@ def test_a_take_without_an_initial_pose_starts_from_the_frame_that_is_found(
     assert any("frame 3 was chosen" in note for note in progress.told)
     # 4 m away with a focal length of 137 px, one pixel is 29 mm
     assert result.report["error_mm"]["absolute"]["mean"] < 29
+
+
+def test_what_is_doubtful_in_the_first_pose_is_told_by_all_means(small_take, tmp_path, monkeypatch):
+    def doubtful(*arguments):
+        return known_start(*arguments).with_words("Left may be right.", doubtful=True)
+
+    class Warned(Notes):
+        def warn(self, text):
+            self.told.append(f"warned: {text}")
+
+    monkeypatch.setattr(beginning, "initialised", doubtful)
+    progress = Warned()
+    result = fit(read_take(small_take), FitRequest(tmp_path, frames=(0, 0)), progress)
+    assert "warned: Left may be right." in progress.told
+    assert "Left may be right." in result.report["notes"]
 
 
 def test_frames_to_choose_from_lie_all_over_the_take_and_between_them(small_take):

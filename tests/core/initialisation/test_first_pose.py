@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 from silhouette_mocap.core.body.kinematics import points, rest_height
 from silhouette_mocap.core.errors import MocapError
+from silhouette_mocap.core.initialisation import facing, first_pose
 from silhouette_mocap.core.initialisation.first_pose import PoseRequest, initialised
 from silhouette_mocap.core.initialisation.pose_kinds import pose_of_kind
 from silhouette_mocap.core.initialisation.standing import body_centre, standing_height
@@ -43,6 +44,18 @@ def test_a_given_height_is_kept():
     request = PoseRequest("A", height_m=1.8)
     first = initialised(body, cameras, (filmed(body, cameras, truth),), request, evaluator)
     assert rest_height(first.body) == pytest.approx(1.8)
+
+
+def test_doubt_about_left_and_right_is_no_mere_note(monkeypatch):
+    body, truth = standing("sixteen_segment", "A", 1.0, 0.0)
+    cameras = small_studio(4)
+    frames = (filmed(body, cameras, truth),)
+    clear = initialised(body, cameras, frames, PoseRequest("A"), evaluator)
+    assert not clear.doubts and "other way" in clear.notes[1]
+    for module in (facing, first_pose):
+        monkeypatch.setattr(module, "CLEARLY", np.inf)
+    (doubt,) = initialised(body, cameras, frames, PoseRequest("A"), evaluator).doubts
+    assert doubt.startswith("Which side is left is in doubt") and "the feet" in doubt
 
 
 def test_centre_and_height_of_a_standing_body():

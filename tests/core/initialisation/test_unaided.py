@@ -52,6 +52,7 @@ def test_the_frame_with_its_limbs_apart_is_chosen_and_its_pose_found():
     # a px of 33 mm
     assert np.mean(list(point_errors(first.body, first.pose, poses[2]).values())) < 0.033
     chosen, tall, facing = first.notes
+    assert not first.doubts
     assert "m tall" in tall and "worse" in facing
     assert chosen.startswith("No initial pose is given: frame 2 was chosen, starting from standing")
     assert re.search(r"right within 50 mm with a probability of [789]\d%\.$", chosen)
@@ -60,7 +61,8 @@ def test_the_frame_with_its_limbs_apart_is_chosen_and_its_pose_found():
 def test_where_standing_poses_do_not_convince_the_visual_hull_is_searched(monkeypatch, caplog):
     monkeypatch.setattr(unaided, "_CONVINCING", 1.1)
     caplog.set_level("INFO")
-    found_in(footage_of([posed("A", "standing")]))
+    _, first = found_in(footage_of([posed("A", "standing")]))
+    assert len(first.doubts) == 1 and "frame 0 was chosen" in first.doubts[0]
     sought = [record.getMessage() for record in caplog.records if "likely" in record.getMessage()]
     assert sought[0].startswith("frame 0 from standing poses")
     assert sought[1].startswith("frame 0 from 36 poses in the visual hull")
