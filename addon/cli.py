@@ -23,6 +23,7 @@ def unregister():
 def _run(arguments: list[str]) -> int:
     """The exit code; core is imported here, so that Blender starts without it."""
     from ..core.cli import main
+    from .bridge.rig_file import read_rig_file
     from .export import export_take
 
-    return main(with_preferences(arguments), export_take)
+    return main(with_preferences(arguments), export_take, read_rig_file)

@@ -3,7 +3,7 @@
 Blender's own exporters write FBX and BVH, with settings that keep motion capture whole: one take,
 every frame, no simplification, no leaf bones. FBX gets its unit in the file's head (FBX_SCALE_ALL),
 so that no scale of 100 sits on the performer in game engines. BVH is in metres with Z up, its root
-alone carries positions.
+alone carries positions. A user's own rig keeps its bones, rest pose, meshes and materials.
 """
 
 import contextlib
@@ -17,6 +17,7 @@ from ..core.errors import MocapError
 from ..core.files import whole_file
 from ..core.motion.export_request import ExportRequest
 from ..core.motion.formats.trc import write_trc
+from .bridge.data_blocks import taken_back
 from .bridge.performance import Performance, add_performance
 from .bridge.timing import set_rate
 
@@ -43,8 +44,8 @@ def export_take(request: ExportRequest) -> tuple[Path, ...]:
     the take gets a scene beside the user's, which goes away again.
 
     Raises:
-        MocapError: footage that cannot be opened, a folder that cannot be written, or an exporter
-            that is switched off.
+        MocapError: footage or a rig that cannot be opened, a folder that cannot be written, or an
+            exporter that is switched off.
     """
     with _take_scene(request) as scene:
         performance = add_performance(scene, request)
@@ -61,19 +62,10 @@ def _take_scene(request: ExportRequest) -> Iterator[bpy.types.Scene]:
         _set_time(scene, request)
         yield scene
         return
-    before = set(_everything())
-    scene = bpy.data.scenes.new(request.name)
-    _set_time(scene, request)
-    try:
+    with taken_back():
+        scene = bpy.data.scenes.new(request.name)
+        _set_time(scene, request)
         yield scene
-    finally:
-        bpy.data.batch_remove([block for block in _everything() if block not in before])
-
-
-def _everything() -> list[bpy.types.ID]:
-    kinds = ("scenes", "collections", "objects", "cameras", "images")
-    kinds += ("armatures", "meshes", "actions")
-    return [block for kind in kinds for block in getattr(bpy.data, kind)]
 
 
 def _set_time(scene: bpy.types.Scene, request: ExportRequest) -> None:
@@ -119,6 +111,7 @@ def _write_bvh(path: Path, scene: bpy.types.Scene, performance: Performance) -> 
         "frame_start": scene.frame_start,
         "frame_end": scene.frame_end,
         "root_transform_only": True,
+        "global_scale": performance.armature.matrix_world.median_scale,
     }
     _run_exporter("export_anim", "bvh", scene, performance, **settings)
 

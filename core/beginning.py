@@ -6,6 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from .body.body import Body
 from .errors import MocapError
 from .initialisation.first_pose import FirstFit, initialised
 from .initialisation.plausibility import check_first_fit
@@ -15,7 +16,7 @@ from .progress import Progress
 from .rendering.choice import Choice
 from .silhouettes.silhouette import Silhouette
 from .take.first_look import check_first_look
-from .take.performer import performer_body, pose_request
+from .take.performer import pose_request
 from .take.take import Take
 from .take.views import Views
 
@@ -45,8 +46,17 @@ class Beginning:
     notes: tuple[str, ...]
 
 
-def take_begun(take: Take, views: Views, choice: Choice, progress: Progress) -> Beginning:
+def take_begun(
+    take: Take, body: Body, views: Views, choice: Choice, progress: Progress
+) -> Beginning:
     """The first pose of ``take``, and what it was found from.
+
+    Args:
+        take: the take.
+        body: its performer's, as `take.performer.performer_body` gives it.
+        views: its cameras.
+        choice: what draws.
+        progress: is told what is found.
 
     Raises:
         MocapError: the take or its footage is at fault, or the performer is not found.
@@ -62,7 +72,7 @@ def take_begun(take: Take, views: Views, choice: Choice, progress: Progress) -> 
     for note in looks:
         progress.note(note)
     progress.begin("first pose", 1)
-    chosen, first = _first_fit(take, views, (frames, seen), choice)
+    chosen, first = _first_fit(take, body, views, (frames, seen), choice)
     frames = [chosen, *(frame for frame in frames if frame != chosen)]
     for note in first.notes:
         progress.note(note)
@@ -106,6 +116,7 @@ def searched_frames(frames: Sequence[int]) -> Sequence[int]:
 
 def _first_fit(
     take: Take,
+    body: Body,
     views: Views,
     looked: tuple[Sequence[int], Mapping[int, Silhouettes]],
     choice: Choice,
@@ -115,7 +126,6 @@ def _first_fit(
     ``looked`` at are some frames, and some of what they show is seen already.
     """
     frames, seen = looked
-    body = performer_body(take.performer)
     footage = Footage(
         views.cameras, lambda f: seen.get(f) or views.silhouettes(f), views.frames, float(take.fps)
     )

@@ -7,7 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from .beginning import take_begun
+from .beginning import Beginning, take_begun
+from .body.rig_file import RigReader
 from .files import made_folder
 from .fitting.search import Search
 from .progress import Progress
@@ -28,8 +29,9 @@ from .results.writing import (
     with_overlay,
     write_results,
 )
+from .take.performer import performer_body
 from .take.take import Take
-from .take.views import Views, open_views
+from .take.views import open_views
 
 
 @dataclass(frozen=True)
@@ -44,6 +46,7 @@ class FitRequest:
         without: names of cameras to leave out.
         resume: whether to go on with an unfinished fit in ``out``.
         shield: entered while the finished frames are written, so that nothing interrupts it.
+        read_rig: reads armatures; None where there is no Blender.
     """
 
     out: Path
@@ -53,6 +56,7 @@ class FitRequest:
     without: tuple[str, ...] = ()
     resume: bool = False
     shield: Callable[[], AbstractContextManager] = nullcontext
+    read_rig: RigReader | None = None
 
     @property
     def settings(self) -> dict[str, object]:
@@ -93,8 +97,9 @@ def fit(take: Take, request: FitRequest, progress: Progress) -> FitResult:
                 progress.note(f"{' and '.join(gone)} went since; leave out --resume for new ones")
             return finished
     if journal is None:
-        start = _started(take, views, inputs, choice, progress)
-        journal = _begun(request.out, start, progress)
+        body = performer_body(take.performer, request.read_rig)
+        begin = take_begun(take, body, views, choice, progress)
+        journal = _begun(request.out, _start(begin, inputs), progress)
     else:
         progress.note(f"{len(journal)} frames were finished before")
     views = views.reduced_by(journal.start.factors)
@@ -117,8 +122,7 @@ def fit(take: Take, request: FitRequest, progress: Progress) -> FitResult:
     return result
 
 
-def _started(take: Take, views: Views, inputs: Inputs, choice: Choice, progress: Progress) -> Start:
-    begin = take_begun(take, views, choice, progress)
+def _start(begin: Beginning, inputs: Inputs) -> Start:
     return Start(
         inputs=inputs,
         factors=tuple(view.reduction.factor for view in begin.views.views),

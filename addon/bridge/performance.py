@@ -10,6 +10,7 @@ from .armature import add_armature
 from .cameras import add_camera, look_through
 from .footage import show_footage
 from .mesh import add_mesh
+from .rig_actor import add_actor
 from .space import add_capture_space
 from .timing import scene_frames
 
@@ -22,13 +23,13 @@ class Performance:
         space: the empty above it all.
         cameras: in the order of the take.
         armature: the performer, with the take's action.
-        mesh: the performer's surface.
+        meshes: the performer's surface.
     """
 
     space: bpy.types.Object
     cameras: tuple[bpy.types.Object, ...]
     armature: bpy.types.Object
-    mesh: bpy.types.Object
+    meshes: tuple[bpy.types.Object, ...]
 
 
 def add_performance(scene: bpy.types.Scene, take: ExportRequest) -> Performance:
@@ -37,7 +38,7 @@ def add_performance(scene: bpy.types.Scene, take: ExportRequest) -> Performance:
     The motion is keyed at the scene's rate, which stays as it is.
 
     Raises:
-        MocapError: footage that cannot be opened.
+        MocapError: footage that cannot be opened, or a rig that is gone or changed.
     """
     collection = bpy.data.collections.new(take.name)
     scene.collection.children.link(collection)
@@ -46,12 +47,16 @@ def add_performance(scene: bpy.types.Scene, take: ExportRequest) -> Performance:
     for camera, placed in zip(take.cameras, cameras, strict=True):
         if camera.name in take.footage:
             show_footage(placed, take.footage[camera.name], take.motion.frames)
-    armature = add_armature(take.body, take.name, space, collection)
-    mesh = add_mesh(take.body, take.body.surfaces[-1], armature)
     motion = take.motion
     frames = scene_frames(scene, motion.frames, motion.rate)
     keys = Keys(frames, motion.pose, motion.locked, motion.keyed)
-    add_action(armature, take.body, take.name, keys)
+    if take.rig is None:
+        armature = add_armature(take.body, take.name, space, collection)
+        meshes = (add_mesh(take.body, take.body.surfaces[-1], armature),)
+        add_action(armature, take.body, take.name, keys)
+    else:
+        actor = add_actor(take, keys, space, collection)
+        armature, meshes = actor.armature, actor.meshes
     if cameras:
         look_through(scene, cameras[0])
-    return Performance(space, cameras, armature, mesh)
+    return Performance(space, cameras, armature, meshes)

@@ -14,6 +14,7 @@ import bpy
 import numpy as np
 
 from ...core.body.body import Body, Dofs, Skin, Surface
+from ...core.body.kinematics import rest_joints
 from ...core.errors import MocapError
 from .rig_dofs import PLACES, Row, bone_rows, root_rows
 from .rig_joints import RigJoints, rig_joints
@@ -23,6 +24,7 @@ from .rig_parts import Tree, limbs_of, parts_of, person_limbs, places_of, points
 
 _SMALL = 0.03
 """Of the body's size: ends of bones that reach less far are held."""
+_SAME_M = 1e-4
 _EVEN = 1e-3
 """By which an armature's scales may differ."""
 
@@ -40,6 +42,28 @@ class Rig:
     body: Body
     metres_from_armature: np.ndarray
     carriers: dict[str, int]
+
+    def resized(self, body: Body) -> "Rig":
+        """The rig whose body is ``body``, which was read of it and scaled as a whole.
+
+        Raises:
+            MocapError: it was read of something else.
+        """
+        if body.dofs.names != self.body.dofs.names or body.joint_names != self.body.joint_names:
+            raise MocapError(
+                f"the rig {self.body.name!r} has other bones now than when the take was fitted",
+                "fit the take anew",
+            )
+        rest, own = rest_joints(body), rest_joints(self.body)
+        size = float(np.linalg.norm(rest) / np.linalg.norm(own))
+        if np.abs(rest - size * own).max() > _SAME_M:
+            raise MocapError(
+                f"the rig {self.body.name!r} has another rest pose now than when the take was "
+                "fitted",
+                "fit the take anew",
+            )
+        scale = np.diag([size, size, size, 1.0])
+        return Rig(body, scale @ self.metres_from_armature, self.carriers)
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,7 +14,6 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
-from ...core.body.body import Body
 from ...core.body.kinematics import joint_transforms, rest_joints
 from ...core.motion.curves import quaternions
 from .action import Keys, key_curve, new_channels
@@ -24,19 +23,20 @@ _TOO_SMALL = 1e-9
 
 
 def add_rig_action(
-    armature: bpy.types.Object, rig: Rig, body: Body, name: str, keys: Keys
+    armature: bpy.types.Object, rig: Rig, metres: np.ndarray, name: str, keys: Keys
 ) -> bpy.types.Action:
     """A new action with a slot for ``armature``, and assigned; earlier actions stay in the file.
 
     Args:
         armature: the one that ``rig`` was read from, or a copy.
-        rig: its joints and bones.
-        body: the rig's body, perhaps scaled, as the armature then is as an object.
+        rig: its body and bones.
+        metres: (4, 4) from the armature's space to the world of the take, as the armature is
+            placed; of the same scale as ``rig.metres_from_armature``.
         name: the action's.
         keys: what is keyed.
     """
     action, bag = new_channels(armature, name)
-    carried = _carried(rig, body, keys.poses)
+    carried = _carried(rig, metres, keys.poses)
     always, once = np.ones(len(keys.frames), bool), np.arange(len(keys.frames)) == 0
     for bone in armature.pose.bones:
         joint = rig.carriers.get(bone.name)
@@ -64,19 +64,15 @@ def add_rig_action(
     return action
 
 
-def _carried(rig: Rig, body: Body, poses: np.ndarray) -> list[np.ndarray]:
+def _carried(rig: Rig, metres: np.ndarray, poses: np.ndarray) -> list[np.ndarray]:
     """J arrays (T, 4, 4) by which the joints carry their bones, in the armature's space."""
-    transforms, rest = joint_transforms(body, poses), rest_joints(body)
-    # a scaled body belongs to an armature that is scaled as much, about the body's origin
-    size = np.linalg.norm(rest) / np.linalg.norm(rest_joints(rig.body))
-    outer = np.diag([size, size, size, 1.0]) @ rig.metres_from_armature
-    inner = np.linalg.inv(outer)
-    found = []
+    transforms, rest = joint_transforms(rig.body, poses), rest_joints(rig.body)
+    inner, found = np.linalg.inv(metres), []
     for joint, place in enumerate(rest):
         moved = np.broadcast_to(np.eye(4), (len(poses), 4, 4)).copy()
         moved[:, :3] = transforms[:, joint]
         moved[:, :3, 3] -= transforms[:, joint, :, :3] @ place
-        found.append(inner @ moved @ outer)
+        found.append(inner @ moved @ rig.metres_from_armature)
     return found
 
 

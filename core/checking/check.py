@@ -4,6 +4,8 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 
+from ..body.body import Body
+from ..body.rig_file import RigReader
 from ..cameras.arrangement import opposite_pairs
 from ..errors import MocapError
 from ..initialisation.standing import body_centre, standing_height
@@ -34,6 +36,7 @@ class CheckRequest:
         further: more checks, which raise MocapError.
         seconds: how long to read footage.
         progress: told of each step.
+        read_rig: reads armatures; None where there is no Blender.
     """
 
     initial_frames: Callable[[Take, tuple[int, int]], Sequence[int]]
@@ -41,6 +44,7 @@ class CheckRequest:
     further: Sequence[Callable[[], object]] = ()
     seconds: float = 8.0
     progress: Progress = SILENCE
+    read_rig: RigReader | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,7 +105,7 @@ def checked(take: Take, request: CheckRequest) -> TakeCheck:
     with faults.noted():
         found = _checked_views(take, request, faults)
     for check in (
-        lambda: performer_body(take.performer),
+        lambda: performer_body(take.performer, request.read_rig),
         load,
         *request.further,
     ):
@@ -117,21 +121,22 @@ def _checked_views(take: Take, request: CheckRequest, faults: _Faults) -> TakeCh
     progress.begin("check", _STEPS)
     units = units_in_words(views.calibration, take.cameras.units)
     found = TakeCheck(take, views.frames, units, notes=views.notes)
-    start, silhouettes, performer = 0, (), None
+    start, silhouettes, performer, body = 0, (), None, None
     with faults.noted():
         begin = request.initial_frames(take, views.frames)
         views, seen = views.reduced_and_seen(begin)
         start, silhouettes = next(iter(shown(take, seen).items()))
         found = replace(found, notes=(*found.notes, *check_first_look(take, views, seen)))
-        performer = _performer(take, views, silhouettes)
+        body = performer_body(take.performer, request.read_rig)
+        performer = _performer(take, body, views, silhouettes)
     progress.advance(None)
     footage = checked_footage(views, request.seconds)
     progress.advance(None)
     for fault in footage.faults:
         faults.add(fault)
     estimate = None
-    if performer is not None and not faults:
-        trial = Trial(take, views, start, silhouettes, performer, request.make_evaluator)
+    if body is not None and performer is not None and not faults:
+        trial = Trial(take, views, start, silhouettes, performer, request.make_evaluator, body)
         with faults.noted():
             estimate = estimated(trial, footage.seconds)
     progress.advance(None)
@@ -166,9 +171,11 @@ def _opened(take: Take, faults: _Faults, progress: Progress) -> Views | None:
             without.append(error.camera)
 
 
-def _performer(take: Take, views: Views, silhouettes: tuple[Silhouette, ...]) -> Performer:
+def _performer(
+    take: Take, body: Body, views: Views, silhouettes: tuple[Silhouette, ...]
+) -> Performer:
     centre = body_centre(views.cameras, silhouettes)
-    height = known_height(take.performer, performer_body(take.performer))
+    height = known_height(take.performer, body)
     if height is None:
         height = standing_height(views.cameras, silhouettes, centre, take.floor)
     return Performer(centre, height)

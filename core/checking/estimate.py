@@ -7,7 +7,6 @@ of takes with four to eight cameras of 320 x 240 to 1152 x 1440 px.
 
 import time
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import cv2
 import numpy as np
@@ -21,12 +20,11 @@ from ..fitting.scores import frame_scores
 from ..fitting.search import Search
 from ..fitting.tracker import EvaluatorFactory, Past, Tracker
 from ..initialisation.hunt import stood
-from ..initialisation.pose_kinds import pose_of_kind
+from ..initialisation.pose_kinds import STANDING, pose_of_kind, stance
 from ..motion.overlay import JPEG_QUALITY, Tile, overlay_picture
 from ..rendering.choice import MakeEvaluator
 from ..rendering.detail import with_level_for
 from ..silhouettes.silhouette import Silhouette
-from ..take.performer import performer_body
 from ..take.take import Take
 from ..take.views import Views
 from .camera_facts import Performer
@@ -91,6 +89,7 @@ class Trial:
         silhouettes: what the V cameras see in it.
         performer: where the performer stands in it.
         make_evaluator: renders and compares.
+        body: the performer's, unscaled.
     """
 
     take: Take
@@ -99,6 +98,7 @@ class Trial:
     silhouettes: tuple[Silhouette, ...]
     performer: Performer
     make_evaluator: MakeEvaluator
+    body: Body
 
 
 def estimated(trial: Trial, reading_s: float) -> Estimate:
@@ -112,7 +112,8 @@ def estimated(trial: Trial, reading_s: float) -> Estimate:
         MocapError: the body or a picture cannot be read.
     """
     body = _standing_body(trial)
-    pose = pose_of_kind(body, trial.take.initial_pose.kind or "A")
+    kind = trial.take.initial_pose.kind
+    pose = stance(body, "A", STANDING) if kind is None else pose_of_kind(body, kind)
     pose = stood(body, pose[None], trial.performer.centre, trial.take.floor)[0]
     make_evaluator = with_level_for(pose, trial.make_evaluator)
     search, cameras = trial.take.search, trial.views.cameras
@@ -162,11 +163,9 @@ def _one_round(
 
 
 def _standing_body(trial: Trial) -> Body:
-    performer = trial.take.performer
-    body = performer_body(performer)
-    if isinstance(performer.body, Path):
-        return body
-    return scaled(body, trial.performer.height_m / rest_height(body))
+    if isinstance(trial.take.performer.body, str):
+        return scaled(trial.body, trial.performer.height_m / rest_height(trial.body))
+    return trial.body
 
 
 def _timed_fit(

@@ -64,6 +64,7 @@ def run(arguments: argparse.Namespace, exporter: Exporter | None) -> int:
         without=tuple(arguments.without),
         resume=arguments.resume,
         shield=shielded,
+        read_rig=arguments.read_rig,
     )
     with occupied(arguments.out):
         result = fit(take, request, arguments.console)

@@ -44,6 +44,7 @@ def run(arguments: argparse.Namespace, exporter: Exporter | None) -> int:
         EVALUATORS[BEST],
         further=(lambda: check_formats(take.exports, exporter),),
         progress=arguments.console,
+        read_rig=arguments.read_rig,
     )
     check = checked(take, request)
     _tell(check)

@@ -22,6 +22,7 @@ from .memory import keep_freed_memory
 from .options import add_common, asked_progress
 
 if TYPE_CHECKING:
+    from ..body.rig_file import RigReader
     from ..motion.export_request import Exporter
 
 DONE, INTERNAL, INPUT, LOST, INTERRUPTED = 0, 1, 2, 3, 130
@@ -44,12 +45,17 @@ _DISK_FAULTS = (errno.ENOSPC, errno.EACCES, errno.EROFS, errno.EDQUOT, errno.EPE
 _log = logging.getLogger(__name__)
 
 
-def main(argv: Sequence[str], exporter: "Exporter | None" = None) -> int:
+def main(
+    argv: Sequence[str],
+    exporter: "Exporter | None" = None,
+    read_rig: "RigReader | None" = None,
+) -> int:
     """Runs one command.
 
     Args:
         argv: the words after the program's name.
         exporter: writes what only Blender can write; None where there is no Blender.
+        read_rig: reads what only Blender can read; likewise.
 
     Returns:
         The exit code: 0 done, 1 internal error, 2 the input is at fault, 3 frames were lost and
@@ -64,7 +70,7 @@ def main(argv: Sequence[str], exporter: "Exporter | None" = None) -> int:
                 named = _named(argv)
                 console.start(named)
                 arguments = build_parser(named).parse_args(argv)
-                arguments.console = console
+                arguments.console, arguments.read_rig = console, read_rig
                 log.open(arguments, argv)
                 return arguments.run(arguments, exporter)
 

@@ -163,6 +163,7 @@ def _odd_limbs(search: ContourSearch, doubts: np.ndarray) -> Sequence[tuple[int,
     leaps = np.linalg.norm(places[0] - places[1], axis=1)
     joints = search.body.segment_joints
     waited = search.past.patient & np.isfinite(search.past.usual)
+    waited = np.broadcast_to(waited, doubts.shape)
     return [
         (limb, part)
         for limb, part in search.sought

@@ -67,10 +67,10 @@ class Past:
     Attributes:
         last: (D,) the pose of the frame before.
         predicted: (D,) the pose expected now.
-        usual: (5,) `FrameScores.lumps` that the frames before had usually; infinite where there
-            were none.
+        usual: (L,) `FrameScores.lumps` that the frames before had usually, or (1,) for all limbs;
+            infinite where there were none.
         trusted: (D,) the pose expected now, with each limb that was in trouble as it was before.
-        patient: (5,) bool, whether a limb may be held there while the silhouettes drop it.
+        patient: likewise, bool, whether a limb may be held there while the silhouettes drop it.
         amiss: frames in a row before this one that were not explained (`lumps.unexplained`).
     """
 
@@ -84,7 +84,7 @@ class Past:
     @classmethod
     def still(cls, pose: np.ndarray) -> "Past":
         """Nothing but a pose (D,), that is not expected to change."""
-        return cls(pose, pose, np.full(5, np.inf), pose, np.ones(5, bool))
+        return cls(pose, pose, np.array([np.inf]), pose, np.array([True]))
 
 
 class Tracker(Protocol):

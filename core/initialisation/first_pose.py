@@ -43,7 +43,7 @@ class PoseRequest:
     """What is known of the initial pose.
 
     Attributes:
-        kind: "A", "T" or "elbows"; None where nothing is known, see `unaided`.
+        kind: "A", "T", "elbows" or "rest"; None where nothing is known, see `unaided`.
         height_m: the performer's height; None to measure it.
         floor: height of the floor in the world, metres.
         own_shape: whether the body takes the performer's shape, or keeps its proportions.

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..body.body import POINT_NAMES
 from ..body.kinematics import rest_height
 from ..cameras.camera import Camera
 from ..errors import MocapError
@@ -44,7 +45,8 @@ def check_first_fit(first: FirstFit, cameras: tuple[Camera, ...]) -> tuple[str, 
     Raises:
         MocapError: a height that nobody has, or silhouettes that the fit does not resemble.
     """
-    check_height(rest_height(first.body))
+    if first.body.point_names == POINT_NAMES:
+        check_height(rest_height(first.body))
     iou = first.iou
     seen = np.flatnonzero(np.isfinite(iou))
     if not len(seen) or iou[seen].mean() < _LEAST_IOU:

@@ -53,16 +53,24 @@ LEGS: dict[str, tuple[Limb, Limb] | None] = {
 """Name -> left and right leg; None for those of the rest pose."""
 _JOINTS = {"arm": ("shoulder", "elbow", "wrist"), "leg": ("hip", "knee", "ankle")}
 
+REST = "rest"
+
 
 def pose_of_kind(body: Body, kind: str) -> np.ndarray:
-    """(D,) pose with the arms of ``kind``, one of `POSE_KINDS`.
+    """(D,) pose with the arms of ``kind``, one of `POSE_KINDS`; "rest" is the rest pose.
 
     Raises:
-        MocapError: an unknown kind.
+        MocapError: an unknown kind, or a body without a person's arms.
     """
+    if kind == REST:
+        return body.rest_pose
     if kind not in POSE_KINDS:
+        kinds = ", ".join((*POSE_KINDS, REST))
+        raise MocapError(f'initial_pose kind "{kind}" is unknown', f"use one of {kinds}")
+    if body.point_names != POINT_NAMES:
         raise MocapError(
-            f'initial_pose kind "{kind}" is unknown', f"use one of {', '.join(POSE_KINDS)}"
+            f'initial_pose kind "{kind}" is a person\'s, and {body.name} is none',
+            f'use "{REST}", and let the take begin in the rest pose',
         )
     return stance(body, kind, STANDING)
 

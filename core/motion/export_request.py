@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from ..body.body import Body
+from ..body.rig_file import RigFile
 from ..cameras.camera import Camera
 from ..errors import MocapError
 from .motion import Motion
@@ -26,6 +27,8 @@ class ExportRequest:
         folder: an existing folder.
         footage: camera name -> the pictures to show behind the performer: a video, or a pattern
             with one ``{frame}`` field such as ``plates/cam01/{frame:06d}.png``. May lack cameras.
+        rig: the armature whose bones are to be keyed, of which ``body`` was read; None where bones
+            are to be made after ``body``.
 
     Raises:
         MocapError: a format that nobody writes.
@@ -39,6 +42,7 @@ class ExportRequest:
     formats: tuple[str, ...]
     folder: Path
     footage: dict[str, str] = field(default_factory=dict)
+    rig: RigFile | None = None
 
     def __post_init__(self):
         unknown = [name for name in self.formats if name not in FORMATS]

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..beginning import Beginning, take_begun
+from ..body.rig_file import RigFile
 from ..errors import MocapError
 from ..files import made_folder
 from ..initialisation.contour_rules.from_frames import ContourSettings, contour_skeleton
@@ -13,6 +14,7 @@ from ..initialisation.contour_rules.skeleton import ContourSkeleton
 from ..initialisation.further_frames import straight_joints
 from ..progress import Progress
 from ..rendering.choice import Choice
+from ..take.performer import performer_body
 from ..take.take import Take
 from ..take.views import narrowed, open_views
 from .files import Performer, write_performer
@@ -51,10 +53,15 @@ def initialise(
             f"names a body that is fitted already, {take.performer.body.name}",
             'name a template under [performer], such as body = "performer"', file=take.path,
         )  # fmt: skip
+    if isinstance(take.performer.body, RigFile):
+        raise MocapError(
+            f"names a rig, {take.performer.body.path.name}, which keeps its own shape",
+            'name a template under [performer], such as body = "performer"', file=take.path,
+        )  # fmt: skip
     views = open_views(take, request.without, (None, None), progress)
     further = request.further and narrowed(take, views.frames, request.further)
     choice = Choice(None, progress.warn)
-    begin = take_begun(take, views, choice, progress)
+    begin = take_begun(take, performer_body(take.performer), views, choice, progress)
     if further is None:
         shown = first_shape(begin)
     else:

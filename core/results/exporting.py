@@ -5,6 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from ..body.file import read_body
+from ..body.rig_file import RigFile
 from ..errors import MocapError
 from ..motion.export_request import Exporter, ExportRequest
 from ..motion.formats.trc import write_trc
@@ -62,6 +63,7 @@ def export(
         formats=tuple(formats),
         folder=folder,
         footage=shown_footage(views, int(motion.frames[-1]), float(take.fps), folder),
+        rig=take.performer.body if isinstance(take.performer.body, RigFile) else None,
     )
     return exporter(request)
 

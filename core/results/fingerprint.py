@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..body.rig_file import RigFile
 from ..errors import MocapError
 from ..files import check_ordinary, unreadable
 from ..take.take import Take
@@ -39,8 +40,12 @@ def fit_inputs(take: Take, views: Views, settings: dict[str, object]) -> Inputs:
     values = {key: value for key, value in asdict(take).items() if key not in _OF_NO_MATTER}
     # not the file: what was read from it, and from whatever else belongs to it
     del values["cameras"]["calibration"]
-    if isinstance(take.performer.body, Path):
-        values["performer"]["body"] = _digest(_contents(take.performer.body))
+    body = take.performer.body
+    if isinstance(body, Path):
+        values["performer"]["body"] = _digest(_contents(body))
+    if isinstance(body, RigFile):
+        values["performer"]["body"] = _digest(_contents(body.path))
+        values["performer"]["armature"] = body.armature
     if take.locks is not None:
         values["locks"] = _digest(_contents(take.locks))
     for key in ("silhouettes", "video", "plate", "ignore"):

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from ..body.file import write_body
+from ..body.rig_file import RigFile
 from ..cameras.arrangement import millimetres_per_pixel
 from ..cameras.camera import Camera
 from ..errors import MocapError
@@ -83,6 +84,11 @@ def check_spared(take: Take, folder: Path) -> None:
         raise MocapError(
             "is the body that the take names, and the result would replace it",
             "give another folder", file=body,
+        )  # fmt: skip
+    if isinstance(body, RigFile) and body.path == (folder / f"{take.name}.blend").resolve():
+        raise MocapError(
+            "is the rig that the take names, and its export would replace it",
+            "give another folder, or the take another name", file=body.path,
         )  # fmt: skip
     shown = (folder / FOOTAGE).resolve()
     for pattern in (files.silhouettes, files.video, files.plate, files.ignore):

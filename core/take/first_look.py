@@ -5,7 +5,6 @@ meet in one place, above the floor, and every camera has to look there.
 """
 
 from collections.abc import Mapping
-from pathlib import Path
 
 import numpy as np
 
@@ -161,7 +160,7 @@ def _check_upright(take: Take, cameras: Cameras, seen: Silhouettes, centre: np.n
             f"the performer's middle would be {off} the floor in the initial pose",
             "check floor under [world], and units and up under [cameras]", file=take.path,
         )  # fmt: skip
-    if take.performer.height_m is None and not isinstance(take.performer.body, Path):
+    if take.performer.height_m is None and isinstance(take.performer.body, str):
         check_height(standing_height(cameras, seen, centre, take.floor), take.path)
 
 

@@ -10,6 +10,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
+from ..body.rig_file import RigFile
 from ..body.templates import TEMPLATES
 from ..cameras.calibration import READERS, WORLD_FROM_UP
 from ..cameras.units import METRES_PER_UNIT
@@ -36,6 +37,7 @@ VERSION = 1
 _FRAME_RATES = (0.1, 10_000.0)
 _SCALES = (0.01, 100.0)
 _LONGEST_NAME = 100
+_RIG = ".blend#"
 _LONGEST_CHAIN = 20
 _TOP = (
     "version", "name", "fps", "frames", "initial_pose", "extends", "locks",
@@ -104,8 +106,14 @@ def _over(base: dict[str, Any], values: dict[str, Any]) -> dict[str, Any]:
 
 def _place_body(performer: Table, root: Path) -> None:
     body = performer.text("body")
-    if body is not None and body.endswith(".npz"):
-        performer.values["body"] = str(inside(body, root, performer.file, '"performer.body"'))
+    if body is None:
+        return
+    file, mark, armature = body.partition(_RIG)
+    if mark:
+        file += ".blend"
+    if mark or file.endswith(".npz"):
+        place = inside(file, root, performer.file, '"performer.body"')
+        performer.values["body"] = f"{place}{mark and '#'}{armature}"
 
 
 def _take(table: Table) -> Take:
@@ -121,15 +129,16 @@ def _take(table: Table) -> Take:
     _refuse_later(fit, "tracker", _LATER_TRACKERS, TRACKERS)
     _refuse_later(export, "formats", _LATER_EXPORTS, EXPORTS)
     floor = world.number("floor")
+    performer = _performer(table.table("performer"))
     return Take(
         path=table.file,
         name=_name(table),
         fps=_fps(table),
         frames=frames,
-        initial_pose=_initial_pose(table.table("initial_pose"), frames),
+        initial_pose=_initial_pose(table.table("initial_pose"), frames, performer),
         cameras=_cameras(table.table("cameras")),
         footage=_footage(table.table("footage")),
-        performer=_performer(table.table("performer")),
+        performer=performer,
         floor=0.0 if floor is None else floor,
         search=_search(fit),
         exports=export.words("formats", EXPORTS),
@@ -190,11 +199,14 @@ def exact_fps(fps: float) -> Fraction:
     return Fraction(str(fps))
 
 
-def _initial_pose(table: Table, frames: tuple[int, int] | None) -> InitialPose:
+def _initial_pose(
+    table: Table, frames: tuple[int, int] | None, performer: Performer
+) -> InitialPose:
     table.allow("frames", "kind")
     if not table.values:
         return InitialPose(kind=None)
-    pose = InitialPose(table.frames("frames"), table.choice("kind", INITIAL_KINDS, "A"))
+    usual = "rest" if isinstance(performer.body, RigFile) else "A"
+    pose = InitialPose(table.frames("frames"), table.choice("kind", INITIAL_KINDS, usual))
     if frames and pose.frames and not frames[0] <= pose.frames[0] <= pose.frames[1] <= frames[1]:
         table.fault(
             f'"initial_pose.frames" {list(pose.frames)} lies outside "frames" {list(frames)}',
@@ -250,10 +262,13 @@ def _footage(table: Table) -> FootageFiles:
 def _performer(table: Table) -> Performer:
     table.allow("body", "height_m")
     body = table.text("body") or "performer"
-    if "#" in body:
-        table.fault(f'a rig as "performer.body" ({body}) is not supported yet', 'use "performer"')
     return Performer(
         # paths are absolute by now
-        body=Path(body) if os.path.isabs(body) else table.choice("body", TEMPLATES, "performer"),
+        body=_file(body) if os.path.isabs(body) else table.choice("body", TEMPLATES, "performer"),
         height_m=table.number("height_m", *HEIGHTS_M),
     )
+
+
+def _file(body: str) -> Path | RigFile:
+    file, mark, armature = body.partition(_RIG)
+    return RigFile(Path(f"{file}.blend"), armature) if mark else Path(body)

@@ -4,9 +4,10 @@ from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
 
+from ..body.rig_file import RigFile
 from ..fitting.search import Search
 
-INITIAL_KINDS = ("A", "T", "elbows")
+INITIAL_KINDS = ("A", "T", "elbows", "rest")
 EXTRACTIONS = ("statistics", "difference")
 EXPORTS = ("blend", "fbx", "bvh", "trc")
 
@@ -17,8 +18,9 @@ class InitialPose:
 
     Attributes:
         frames: first and last frame that show it, inclusive; None for the take's first frame.
-        kind: ``A``, ``T`` or ``elbows`` (upper arms lifted, forearms hanging straight down); None
-            where the take tells nothing, and a frame has to be found.
+        kind: ``A``, ``T``, ``elbows`` (upper arms lifted, forearms hanging straight down) or
+            ``rest``, the body's own rest pose; None where the take tells nothing, and a frame has
+            to be found.
     """
 
     frames: tuple[int, int] | None = None
@@ -83,11 +85,11 @@ class Performer:
     """Who is captured.
 
     Attributes:
-        body: a template's name, or the path of a fitted ``body.npz``.
+        body: a template's name, the path of a fitted ``body.npz``, or an armature of the user's.
         height_m: standing height; None to take it from the silhouettes.
     """
 
-    body: str | Path
+    body: str | Path | RigFile
     height_m: float | None
 
 

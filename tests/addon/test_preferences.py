@@ -21,7 +21,7 @@ def asked_of_core(monkeypatch, words):
     from bl_ext.user_default.silhouette_mocap.core import cli as core_cli
 
     handed = []
-    monkeypatch.setattr(core_cli, "main", lambda words, exporter: handed.append(words) or 0)
+    monkeypatch.setattr(core_cli, "main", lambda words, *means: handed.append(words) or 0)
     assert cli._run(words) == 0
     return handed[0]
 

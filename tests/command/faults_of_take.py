@@ -136,6 +136,13 @@ _value(
 )
 _value("name that is too long", '"small"', f'"{"small" * 60}"', '"name"', "300", "shorten")
 _value("unknown body", "sixteen_segment", "centaur", "centaur", "performer, sixteen_segment")
+
+
+@VALUES.add("a rig that is not there", "small/actor.blend: no such file; check", early=False)
+def _(folder: Path):
+    replace_text(folder / "take.toml", "sixteen_segment", "actor.blend#Rig")
+
+
 _value("unknown unit", 'units = "m"', 'units = "feet"', "feet", "m, cm, mm")
 _value("no calibration named", 'calibration = "calibration.toml"', "", '"cameras.calibration" is')
 _value("path outside --root", '"calibration.toml"', '"../../calibration.toml"', "outside", "--root")

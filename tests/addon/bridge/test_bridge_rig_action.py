@@ -16,6 +16,7 @@ from bl_ext.user_default.silhouette_mocap.core.body.kinematics import (
     world_vertices,
 )
 from bl_ext.user_default.silhouette_mocap.core.body.scaling import scaled
+from bl_ext.user_default.silhouette_mocap.core.errors import MocapError
 from mathutils import Matrix
 
 MODES = ("QUATERNION", "XYZ", "ZYX", "YXZ", "AXIS_ANGLE")
@@ -39,12 +40,15 @@ def keys_of(body, poses, keyed=None):
     return Keys(np.arange(len(poses)), poses, np.zeros(len(poses), bool), keyed)
 
 
-def largest_gap(armature, rig, body, poses, metres=1.0):
+def keyed_in_place(armature, rig, keys):
+    return add_rig_action(armature, rig, rig.metres_from_armature, "take", keys)
+
+
+def largest_gap(armature, rig, poses, placed=None):
     """Metres and radians by which bones lie elsewhere than core's joints carry them."""
-    rest, transforms = rest_joints(body), joint_transforms(body, poses)
-    size = np.linalg.norm(rest) / np.linalg.norm(rest_joints(rig.body))
-    outer = np.diag([size, size, size, 1]) @ rig.metres_from_armature
-    worst = 0.0
+    rest, transforms = rest_joints(rig.body), joint_transforms(rig.body, poses)
+    outer = rig.metres_from_armature
+    placed, worst = outer if placed is None else placed, 0.0
     for frame in range(len(poses)):
         bpy.context.scene.frame_set(frame)
         for bone, joint in rig.carriers.items():
@@ -52,7 +56,7 @@ def largest_gap(armature, rig, body, poses, metres=1.0):
             carried[:3] = transforms[frame, joint]
             carried[:3, 3] -= carried[:3, :3] @ rest[joint]
             wanted = carried @ outer @ np.array(armature.data.bones[bone].matrix_local)
-            found = outer @ np.array(armature.pose.bones[bone].matrix)
+            found = placed @ np.array(armature.pose.bones[bone].matrix)
             worst = max(worst, np.abs(found - wanted).max())
     return worst
 
@@ -62,8 +66,8 @@ def test_every_bone_lies_where_its_joint_carries_it(bones):
     armature = rigs.make_rig(getattr(rigs, bones))
     rig = read_rig(armature, bpy.data.objects, 1.0)
     poses = moving(rig.body)
-    add_rig_action(armature, rig, rig.body, "take", keys_of(rig.body, poses))
-    assert largest_gap(armature, rig, rig.body, poses) < 1e-5
+    keyed_in_place(armature, rig, keys_of(rig.body, poses))
+    assert largest_gap(armature, rig, poses) < 1e-5
 
 
 @pytest.mark.parametrize("mode", MODES)
@@ -73,9 +77,11 @@ def test_bones_keep_their_rotation_mode(mode):
         bone.rotation_mode = mode
     rig = read_rig(armature, bpy.data.objects, 1.0)
     poses = moving(rig.body)
-    action = add_rig_action(armature, rig, rig.body, "take", keys_of(rig.body, poses))
+    action = add_rig_action(
+        armature, rig, rig.metres_from_armature, "take", keys_of(rig.body, poses)
+    )
     assert {bone.rotation_mode for bone in armature.pose.bones} == {mode}
-    assert largest_gap(armature, rig, rig.body, poses) < 1e-5
+    assert largest_gap(armature, rig, poses) < 1e-5
     curves = action.layers[0].strips[0].channelbag(action.slots[0]).fcurves
     turns = [c for c in curves if "rotation" in c.data_path and len(c.keyframe_points) > 1]
     steps = [np.abs(np.diff([key.co[1] for key in curve.keyframe_points])).max() for curve in turns]
@@ -92,17 +98,42 @@ def test_an_armature_that_is_turned_moved_and_scaled_in_centimetres():
     rig = read_rig(armature, bpy.data.objects, 0.01)
     assert np.ptp(world_vertices(rig.body, rig.body.rest_pose), axis=0).max() < 2
     poses = moving(rig.body)
-    add_rig_action(armature, rig, rig.body, "take", keys_of(rig.body, poses))
-    assert largest_gap(armature, rig, rig.body, poses) < 1e-5
+    keyed_in_place(armature, rig, keys_of(rig.body, poses))
+    assert largest_gap(armature, rig, poses) < 1e-5
 
 
 def test_a_scaled_body_moves_an_armature_scaled_as_much():
     armature = rigs.make_rig(rigs.RIGIFY)
     rig = read_rig(armature, bpy.data.objects, 1.0)
-    body = scaled(rig.body, 1.13)
-    poses = moving(body)
-    add_rig_action(armature, rig, body, "take", keys_of(body, poses))
-    assert largest_gap(armature, rig, body, poses) < 1e-5
+    rig = rig.resized(scaled(rig.body, 1.13))
+    assert np.allclose(rig.metres_from_armature[:3, :3], 1.13 * np.eye(3))
+    poses = moving(rig.body)
+    keyed_in_place(armature, rig, keys_of(rig.body, poses))
+    assert largest_gap(armature, rig, poses) < 1e-5
+
+
+def test_an_armature_placed_elsewhere_shows_the_performance_in_the_same_place():
+    armature = rigs.make_rig(rigs.DOG)
+    armature.matrix_world = Matrix.Rotation(1.2, 4, (1, 0, 2)) @ Matrix.Scale(2, 4)
+    rig = read_rig(armature, bpy.data.objects, 1.0)
+    placed = np.array(
+        Matrix.Translation((3, 1, 2)) @ Matrix.Rotation(2, 4, "Z") @ Matrix.Scale(2, 4)
+    )
+    poses = moving(rig.body)
+    add_rig_action(armature, rig, placed, "take", keys_of(rig.body, poses))
+    assert largest_gap(armature, rig, poses, placed) < 1e-5
+
+
+def test_a_body_of_another_rig_is_refused():
+    armature = rigs.make_rig(rigs.DOG)
+    dog = read_rig(armature, bpy.data.objects, 1.0)
+    longer = dog.body.offsets.copy()
+    longer[5] *= 1.1
+    with pytest.raises(MocapError, match=r"another rest pose now .*fit the take anew"):
+        dog.resized(replace(dog.body, offsets=longer))
+    person = read_rig(rigs.make_rig(rigs.RIGIFY, "Person"), bpy.data.objects, 1.0)
+    with pytest.raises(MocapError, match=r"other bones now .*fit the take anew"):
+        dog.resized(person.body)
 
 
 def test_bones_that_do_not_inherit_rotation_or_use_global_location_are_keyed_all_the_same():
@@ -112,8 +143,8 @@ def test_bones_that_do_not_inherit_rotation_or_use_global_location_are_keyed_all
     armature.data.bones["spine"].use_local_location = False
     rig = read_rig(armature, bpy.data.objects, 1.0)
     poses = moving(rig.body)
-    add_rig_action(armature, rig, rig.body, "take", keys_of(rig.body, poses))
-    assert largest_gap(armature, rig, rig.body, poses) < 1e-5
+    keyed_in_place(armature, rig, keys_of(rig.body, poses))
+    assert largest_gap(armature, rig, poses) < 1e-5
 
 
 def test_a_pose_that_the_file_was_left_in_does_not_show():
@@ -123,8 +154,8 @@ def test_a_pose_that_the_file_was_left_in_does_not_show():
         bone.rotation_quaternion = (0.9, 0.3, 0.2, 0.1)
         bone.location, bone.scale = (0.02, 0.01, 0.03), (1.2, 1, 1)
     poses = moving(rig.body)
-    add_rig_action(armature, rig, rig.body, "take", keys_of(rig.body, poses))
-    assert largest_gap(armature, rig, rig.body, poses) < 1e-5
+    keyed_in_place(armature, rig, keys_of(rig.body, poses))
+    assert largest_gap(armature, rig, poses) < 1e-5
 
 
 def test_constraints_that_would_pull_keyed_bones_elsewhere_are_muted():
@@ -135,9 +166,9 @@ def test_constraints_that_would_pull_keyed_bones_elsewhere_are_muted():
     reach.target = target
     rig = read_rig(armature, bpy.data.objects, 1.0)
     poses = moving(rig.body)
-    add_rig_action(armature, rig, rig.body, "take", keys_of(rig.body, poses))
+    keyed_in_place(armature, rig, keys_of(rig.body, poses))
     assert reach.mute
-    assert largest_gap(armature, rig, rig.body, poses) < 1e-5
+    assert largest_gap(armature, rig, poses) < 1e-5
 
 
 def test_a_limit_rotation_constraint_lets_every_pose_within_the_body_s_limits_pass():
@@ -151,15 +182,15 @@ def test_a_limit_rotation_constraint_lets_every_pose_within_the_body_s_limits_pa
             setattr(rule, f"max_{axis}", high)
     rig = read_rig(armature, bpy.data.objects, 1.0)
     poses = clamped(rig.body, 3 * moving(rig.body))
-    add_rig_action(armature, rig, rig.body, "take", keys_of(rig.body, poses))
-    assert largest_gap(armature, rig, rig.body, poses) < 1e-5
+    keyed_in_place(armature, rig, keys_of(rig.body, poses))
+    assert largest_gap(armature, rig, poses) < 1e-5
 
 
 def test_the_mesh_moves_as_core_draws_it():
     armature = rigs.make_rig(rigs.RIGIFY)
     rig = read_rig(armature, bpy.data.objects, 1.0)
     poses = moving(rig.body)
-    add_rig_action(armature, rig, rig.body, "take", keys_of(rig.body, poses))
+    keyed_in_place(armature, rig, keys_of(rig.body, poses))
     bpy.context.scene.frame_set(7)
     skin = bpy.data.objects["Skin"].evaluated_get(bpy.context.evaluated_depsgraph_get())
     outer = rig.metres_from_armature
@@ -177,7 +208,9 @@ def test_reduced_keys_stay_reduced_in_quaternion_mode_and_become_all_frames_in_o
     poses = moving(rig.body)
     keyed = np.zeros((FRAMES, len(rig.body.joint_names)), bool)
     keyed[[0, 5, -1]] = True
-    action = add_rig_action(armature, rig, rig.body, "take", keys_of(rig.body, poses, keyed))
+    action = add_rig_action(
+        armature, rig, rig.metres_from_armature, "take", keys_of(rig.body, poses, keyed)
+    )
     curves = action.layers[0].strips[0].channelbag(action.slots[0]).fcurves
     counts = {c.data_path: len(c.keyframe_points) for c in curves}
     assert counts['pose.bones["thigh.L"].rotation_quaternion'] == 3
@@ -190,7 +223,9 @@ def test_a_second_action_keeps_the_first():
     armature = rigs.make_rig(rigs.DOG)
     rig = read_rig(armature, bpy.data.objects, 1.0)
     keys = keys_of(rig.body, moving(rig.body))
-    first = add_rig_action(armature, rig, rig.body, "take", keys)
-    second = add_rig_action(armature, rig, rig.body, "take", replace(keys, poses=keys.poses / 2))
+    first = keyed_in_place(armature, rig, keys)
+    second = add_rig_action(
+        armature, rig, rig.metres_from_armature, "take", replace(keys, poses=keys.poses / 2)
+    )
     assert armature.animation_data.action == second != first
     assert first.use_fake_user

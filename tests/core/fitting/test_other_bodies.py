@@ -20,6 +20,7 @@ from silhouette_mocap.core.fitting.limbs import (
 )
 from silhouette_mocap.core.fitting.scores import frame_scores
 from silhouette_mocap.core.fitting.search import Search
+from silhouette_mocap.core.fitting.tracker import Past
 from silhouette_mocap.core.fitting.tracking import History, track
 from silhouette_mocap.core.motion.motion import read_motion, write_motion
 from silhouette_mocap.core.motion.recording import recorded
@@ -91,6 +92,14 @@ def test_a_dog_is_tracked(walking, fits):
     # 33 mm per px, perfect silhouettes: half a pixel on average
     assert off.mean() < 0.017
     assert not any(fit.scores.lost for fit in fits.values())
+
+
+def test_a_pose_is_found_from_another_alone(walking):
+    body, cameras = dog(), small_studio()
+    tracker = Search().made(body, cameras, evaluator)
+    found = tracker.fit(filmed(body, cameras, walking[1]), Past.still(walking[0])).pose
+    off = np.linalg.norm(np.diff(points(body, np.stack([found, walking[1]])), axis=0)[0], axis=1)
+    assert off.mean() < 0.017
 
 
 def test_body_and_motion_of_a_dog_come_back_from_their_files(fits, tmp_path):

@@ -4,6 +4,7 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
+from silhouette_mocap.core.body.rig_file import RigFile
 from silhouette_mocap.core.errors import MocapError
 from silhouette_mocap.core.fitting.search import Search
 from silhouette_mocap.core.take import Adjustment, read_take
@@ -168,7 +169,8 @@ def test_a_fault_in_a_shared_file_names_the_shared_file(folder):
         ("[footage]", '[footage]\nextraction = "knn"', '"knn" in "footage.extraction" is not supp'),
         ("[footage]", '[footage]\nextraction = "magic"', "one of statistics, difference"),
         ("[footage]", "[world]\nflor = 1\n[footage]", 'did you mean "floor"'),
-        ("[footage]", '[performer]\nbody = "a.blend#Rig"\n[footage]', "not supported yet"),
+        ("[footage]", '[performer]\nbody = "../../a.blend#Rig"\n[footage]', "outside"),
+        ("[footage]", '[performer]\nbody = "actor#Rig"\n[footage]', "got a text ('actor#Rig')"),
         ("[footage]", "[performer]\nheight_m = -1\n[footage]", '"performer.height_m"'),
         ("[footage]", '[fit]\nsetting = "quick"\n[footage]', "one of robust, faithful"),
         ("[footage]", "[fit]\nfast_motion = 1\n[footage]", "true or false"),
@@ -226,3 +228,13 @@ def test_an_unknown_body_names_the_take_and_the_known_ones(folder):
 def test_a_path_that_no_file_can_have_is_told_with_its_key(folder, place):
     text = MINIMAL.replace("masks/{camera}/{frame:06d}.png", place)
     assert '"footage.silhouettes"' in complaint(folder, text)
+
+
+def test_a_rig_is_a_file_and_an_armature_in_it(folder):
+    rig = '[performer]\nbody = "../actor.blend#My Rig#2"\n[footage]'
+    take = taken(folder, MINIMAL.replace("[footage]", rig))
+    assert take.performer.body == RigFile(folder.parent / "actor.blend", "My Rig#2")
+    assert take.initial_pose.kind is None
+    for given, kind in (("frames = [0, 2]", "rest"), ('kind = "T"', "T")):
+        asked = MINIMAL.replace("[cameras]", f"initial_pose = {{ {given} }}\n[cameras]")
+        assert taken(folder, asked.replace("[footage]", rig)).initial_pose.kind == kind
