@@ -8,6 +8,7 @@ from silhouette_mocap.core.initialisation.own_shape import in_own_shape
 from silhouette_mocap.core.initialisation.pose_kinds import pose_of_kind
 from silhouette_mocap.core.initialisation.shape_fit import fitted_shape
 from silhouette_mocap.core.initialisation.shape_model import ShapeModel
+from silhouette_mocap.core.silhouettes.silhouette import Silhouette
 from synthetic import dof_values, evaluator, filmed, small_body
 
 BODY = small_body("performer")
@@ -118,3 +119,22 @@ def test_one_instant_in_twenty_cameras_of_a_dome_gives_a_body():
     assert errors.mean() < 0.02
     assert rest_height(first.body) == pytest.approx(rest_height(truth), rel=0.02)
     assert np.abs(lengths(first.body, first.pose) / lengths(truth, pose) - 1).mean() < 0.07
+
+
+@pytest.mark.parametrize("fault", ["moved", "noise", "nobody"])
+def test_a_camera_that_lies_hardly_changes_the_shape(fault):
+    truth = someone()
+    pose = pose_of_kind(truth, "A")
+    seen = list(filmed(truth, CAMERAS, pose))
+    right = fitted_shape(BODY, CAMERAS, [seen], pose[None], evaluator)
+    own = seen[2].foreground
+    shown = {
+        "moved": np.roll(own, 12, axis=1),
+        "noise": np.random.default_rng(0).random(own.shape) < 0.5,
+        "nobody": np.zeros_like(own),
+    }
+    seen[2] = Silhouette(shown[fault], seen[2].observed)
+    fooled = fitted_shape(BODY, CAMERAS, [seen], pose[None], evaluator)
+    # half a px of a forearm's radius
+    assert np.abs(fooled.logs - right.logs).max() < 0.06
+    assert rest_height(fooled.body) == pytest.approx(rest_height(right.body), rel=0.005)
