@@ -38,6 +38,8 @@ def known_height(performer: Performer, body: Body) -> float | None:
     Raises:
         MocapError: the body of a body.npz has a height that nobody has.
     """
+    if performer.measured:
+        return None
     if performer.height_m is None and isinstance(performer.body, RigFile):
         # of whatever size it was made
         return rest_height(body)

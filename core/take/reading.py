@@ -38,6 +38,8 @@ _FRAME_RATES = (0.1, 10_000.0)
 _SCALES = (0.01, 100.0)
 _LONGEST_NAME = 100
 _RIG = ".blend#"
+_MEASURED = "measured"
+"""Instead of a height: what the silhouettes show."""
 _LONGEST_CHAIN = 20
 _TOP = (
     "version", "name", "fps", "frames", "initial_pose", "extends", "locks",
@@ -262,10 +264,12 @@ def _footage(table: Table) -> FootageFiles:
 def _performer(table: Table) -> Performer:
     table.allow("body", "height_m")
     body = table.text("body") or "performer"
+    measured = table.values.get("height_m") == _MEASURED
     return Performer(
         # paths are absolute by now
         body=_file(body) if os.path.isabs(body) else table.choice("body", TEMPLATES, "performer"),
-        height_m=table.number("height_m", *HEIGHTS_M),
+        height_m=None if measured else table.number("height_m", *HEIGHTS_M),
+        measured=measured,
     )
 
 

@@ -86,11 +86,14 @@ class Performer:
 
     Attributes:
         body: a template's name, the path of a fitted ``body.npz``, or an armature of the user's.
-        height_m: standing height; None to take it from the silhouettes.
+        height_m: standing height; None for that of the body's file, or, of a template, what the
+            silhouettes show.
+        measured: whether a body from a file takes its size from the silhouettes, too.
     """
 
     body: str | Path | RigFile
     height_m: float | None
+    measured: bool = False
 
 
 @dataclass(frozen=True)

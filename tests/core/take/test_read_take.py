@@ -171,6 +171,7 @@ def test_a_fault_in_a_shared_file_names_the_shared_file(folder):
         ("[footage]", "[world]\nflor = 1\n[footage]", 'did you mean "floor"'),
         ("[footage]", '[performer]\nbody = "../../a.blend#Rig"\n[footage]', "outside"),
         ("[footage]", '[performer]\nbody = "actor#Rig"\n[footage]', "got a text ('actor#Rig')"),
+        ("[footage]", '[performer]\nheight_m = "tall"\n[footage]', '"performer.height_m"'),
         ("[footage]", "[performer]\nheight_m = -1\n[footage]", '"performer.height_m"'),
         ("[footage]", '[fit]\nsetting = "quick"\n[footage]', "one of robust, faithful"),
         ("[footage]", "[fit]\nfast_motion = 1\n[footage]", "true or false"),
