@@ -15,6 +15,7 @@ from ..body.body import Body
 from ..body.kinematics import rest_height
 from ..body.scaling import scaled
 from ..cameras.camera import Camera
+from ..fitting.contour import ContourTracker
 from ..fitting.hierarchical import SETTINGS, HierarchicalTracker
 from ..fitting.scores import frame_scores
 from ..fitting.search import Search
@@ -30,7 +31,7 @@ from ..take.views import Views
 from .camera_facts import Performer
 
 _ROUNDS_PER_FRAME = 1.8
-_ROUNDS_OF_FIRST_POSE = 14.0
+_FITS_OF_FIRST_POSE, _FITS_OF_SHAPE = 20.0, 50.0
 _NUDGE_M = 0.01
 _PROGRAM_BYTES = 150e6
 _BYTES_PER_FOOTAGE_PX, _BYTES_PER_WORKING_PX = 38.0, 20.0
@@ -49,7 +50,7 @@ class Estimate:
 
     Attributes:
         frames: how many will be tracked.
-        first_pose_s: time to find the initial pose.
+        first_pose_s: time to find the initial pose and the performer's shape.
         reading_s: time per frame to read the footage and make silhouettes.
         fitting_s: time per frame to search the pose.
         picture_s: time per frame for overlay picture and video.
@@ -117,14 +118,15 @@ def estimated(trial: Trial, reading_s: float) -> Estimate:
     pose = stood(body, pose[None], trial.performer.centre, trial.take.floor)[0]
     make_evaluator = with_level_for(pose, trial.make_evaluator)
     search, cameras = trial.take.search, trial.views.cameras
-    tracker = _one_round(search, body, cameras, make_evaluator)
-    round_s, scores_s = _timed_fit(tracker, trial.silhouettes, pose)
-    frame_s = _ROUNDS_PER_FRAME * round_s
-    if search.tracker != "hierarchical":
-        tracker = search.made(body, cameras, make_evaluator)
-        # from a pose as near as that of the frame before is
-        near = tracker.fit(trial.silhouettes, Past.still(pose)).pose
-        frame_s, _ = _timed_fit(tracker, trial.silhouettes, near)
+    tracker = ContourTracker(body, cameras, make_evaluator)
+    # from a pose as near as that of the frame before is
+    near = tracker.fit(trial.silhouettes, Past.still(pose)).pose
+    frame_s, scores_s = _timed_fit(tracker, trial.silhouettes, near)
+    own_shape = isinstance(trial.take.performer.body, str)
+    first_s = frame_s * (_FITS_OF_FIRST_POSE + own_shape * _FITS_OF_SHAPE)
+    if search.tracker == "hierarchical":
+        one_round = _one_round(search, body, cameras, make_evaluator)
+        frame_s = _ROUNDS_PER_FRAME * _timed_fit(one_round, trial.silhouettes, pose)[0]
     picture_s, picture_bytes = _timed_picture(tracker, trial, pose)
     first, last = trial.views.frames
     frames, dofs = last - first + 1, len(body.dofs)
@@ -137,7 +139,7 @@ def estimated(trial: Trial, reading_s: float) -> Estimate:
     video = frames * picture_bytes * _VIDEO_SHARE
     return Estimate(
         frames=frames,
-        first_pose_s=_ROUNDS_OF_FIRST_POSE * round_s,
+        first_pose_s=first_s,
         reading_s=reading_s,
         fitting_s=frame_s + scores_s,
         picture_s=picture_s,
@@ -157,7 +159,7 @@ def estimated(trial: Trial, reading_s: float) -> Estimate:
 def _one_round(
     search: Search, body: Body, cameras: tuple[Camera, ...], make_evaluator: EvaluatorFactory
 ) -> HierarchicalTracker:
-    """The tracker that finds the first pose, for one round of its search."""
+    """The tracker ``hierarchical`` for one round of its search."""
     setting = replace(SETTINGS[search.setting][search.fast_motion], rounds=1)
     return HierarchicalTracker(body, cameras, make_evaluator, setting)
 

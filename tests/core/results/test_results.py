@@ -7,7 +7,7 @@ from contextlib import contextmanager
 
 import numpy as np
 import pytest
-from silhouette_mocap.core import pipeline
+from silhouette_mocap.core import beginning
 from silhouette_mocap.core.fitting import passes
 from silhouette_mocap.core.footage.pictures import write_picture
 from silhouette_mocap.core.motion.motion import read_motion
@@ -89,7 +89,7 @@ def test_a_report_that_cannot_be_made_costs_no_frame(take_file, tmp_path, monkey
 
 
 def test_a_camera_that_looks_away_has_no_scale(take_file, tmp_path, monkeypatch):
-    monkeypatch.setattr(pipeline, "check_first_look", lambda *_: ())
+    monkeypatch.setattr(beginning, "check_first_look", lambda *_: ())
     path = take_file.with_name("calibration.toml")
     cameras = tomllib.loads(path.read_text("utf-8"))
     # the performer's distance with the other sign
