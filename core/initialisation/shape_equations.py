@@ -56,6 +56,7 @@ class _Distances:
     """n distances of points on a body's outline.
 
     Attributes:
+        views: (n,) indices.
         segments: (n,) indices.
         points: (n, 3) m, in the space of the segment's joint.
         world: (n, 3) m.
@@ -63,6 +64,7 @@ class _Distances:
         values: (n,) m.
     """
 
+    views: np.ndarray
     segments: np.ndarray
     points: np.ndarray
     world: np.ndarray
@@ -83,12 +85,18 @@ class ShapeEquations:
         self._model, self._evaluator, self._settings = model, evaluator, settings
         self._twists = Twists(evaluator.body)
 
-    def of(self, sighting: Sighting, pose: np.ndarray, reach_m: float) -> FrameEquations:
-        """The equations at a pose (D,); distances beyond ``reach_m`` count for less and less."""
+    def of(
+        self, sighting: Sighting, pose: np.ndarray, trust: np.ndarray, reach_m: float
+    ) -> FrameEquations:
+        """The equations at a pose (D,); distances beyond ``reach_m`` count for less and less.
+
+        Those of each view count by its ``trust`` (V,), too.
+        """
         transforms, twists = self._twists.at(pose)
         distances = self._distances(sighting, pose, transforms)
         rows = self._rows(distances, transforms, twists)
-        weights = 1 / (1 + (distances.values / reach_m) ** 2) ** 2 / self._settings.deviation_m**2
+        weights = trust[distances.views] / (1 + (distances.values / reach_m) ** 2) ** 2
+        weights /= self._settings.deviation_m**2
         weighed = (rows * weights[:, None]).T
         return FrameEquations(weighed @ rows, weighed @ distances.values, len(rows))
 
@@ -98,15 +106,17 @@ class ShapeEquations:
         spacing_px = float((self._settings.spacing_m / sighting.metres).max())
         outlines = self._evaluator.outline(pose, None, spacing_px)
         found = []
-        for outline, contour, camera, metre in zip(
+        seen = zip(
             outlines, sighting.contours, self._evaluator.cameras, sighting.metres, strict=True
-        ):
+        )
+        for view, (outline, contour, camera, metre) in enumerate(seen):
             which, normals, px = _pairs(outline, contour, self._settings.turn_m / metre)
             segments, points = outline.segments[which], outline.points[which]
             placed = transforms[self._evaluator.body.segment_joints[segments]]
             world = (placed[:, :, :3] @ points[..., None])[..., 0] + placed[:, :, 3]
             slopes = metre * _image_slopes(camera, world, normals)
-            found.append((segments, points, world, slopes, metre * px))
+            views = np.full(len(which), view)
+            found.append((views, segments, points, world, slopes, metre * px))
         return _Distances(*map(np.concatenate, zip(*found, strict=True)))
 
     def _rows(

@@ -18,16 +18,20 @@ import numpy as np
 from ..body.body import Body
 from ..body.kinematics import clamped
 from ..cameras.camera import Camera
+from ..energy.evaluator import Evaluator
 from ..fitting.contour_descent import Descent, DescentSettings
 from ..fitting.contour_targets import ContourTargets
 from ..fitting.scores import metres_at
 from ..fitting.tracker import EvaluatorFactory
+from ..fitting.view_trust import view_weights
 from ..silhouettes.silhouette import Silhouette
 from .shape_equations import FrameEquations, ShapeEquations, Sighting
 from .shape_model import ShapeModel
 
 _ENOUGH = 3
 """Rounds at the narrowest reach, at least."""
+_DECIMALS = 6
+"""Of logarithms and poses: sums in another order, on more processors, shall not change the body."""
 
 
 @dataclass(frozen=True)
@@ -115,7 +119,7 @@ class _Search:
         self._template, self._model, self._settings = body, ShapeModel(body), settings
         self._make = lambda body: make_evaluator(body, cameras)
         self._evaluator = self._make(body)
-        self._poses = [np.array(pose, float) for pose in poses]
+        self._poses = list(np.round(poses, _DECIMALS))
         self._sightings = [
             _sighting(frame, metres_at(self._evaluator, pose), settings.descent.spacing_m)
             for frame, pose in zip(frames, self._poses, strict=True)
@@ -124,6 +128,7 @@ class _Search:
             ContourTargets(body, cameras, sighting.contours, sighting.metres)
             for sighting in self._sightings
         ]
+        self._frames = frames
         self._logs = np.zeros(len(self._model))
         self._matrix = self._model.precision
 
@@ -140,8 +145,10 @@ class _Search:
         equations = ShapeEquations(self._model, self._evaluator, self._settings.descent)
         self._poses = [self._descended(descent, k, reach_m) for k in range(len(self._poses))]
         found = [
-            equations.of(sighting, pose, reach_m)
-            for sighting, pose in zip(self._sightings, self._poses, strict=True)
+            equations.of(sighting, pose, targets.shares, reach_m)
+            for sighting, targets, pose in zip(
+                self._sightings, self._targets, self._poses, strict=True
+            )
         ]
         solved = [
             _Eliminated.of(descent, pose, equations)
@@ -151,10 +158,11 @@ class _Search:
         self._matrix = self._model.precision + share * sum(s.matrix for s in solved)
         slope = self._model.precision @ self._logs + share * sum(s.slope for s in solved)
         change = -np.linalg.solve(self._matrix, slope)
-        # sums in another order, on more processors, shall not change the body
-        change = np.round(change / max(1.0, np.abs(change).max() / self._settings.longest), 6)
+        change /= max(1.0, np.abs(change).max() / self._settings.longest)
+        change = np.round(change, _DECIMALS)
+        poses = np.round([s.pose_after(change) for s in solved], _DECIMALS)
         body = self._evaluator.body
-        self._poses = list(clamped(body, np.stack([s.pose_after(change) for s in solved])))
+        self._poses = list(clamped(body, poses))
         self._logs = self._logs + change
         self._evaluator = self._make(self._model.changed(body, change))
         return float(np.abs(change).max())
@@ -162,7 +170,18 @@ class _Search:
     def _descended(self, descent: Descent, index: int, reach_m: float) -> np.ndarray:
         spacing_px = float((self._settings.descent.spacing_m / self._sightings[index].metres).max())
         pose, reaches = self._poses[index], np.full(self._settings.steps, reach_m)
-        return descent.run(self._targets[index], spacing_px, pose, pose, reaches)
+        pose = descent.run(self._targets[index], spacing_px, pose, pose, reaches)
+        self._targets[index].shares = _trust(self._evaluator, pose, self._frames[index])
+        return pose
+
+
+def _trust(evaluator: Evaluator, pose: np.ndarray, frame: Sequence[Silhouette]) -> np.ndarray:
+    """(V,) how far each view is trusted, as far as a pose (D,) explains it, `view_weights`."""
+    drawn = [p & s.observed for p, s in zip(evaluator.silhouettes(pose), frame, strict=True)]
+    seen = [silhouette.foreground & silhouette.observed for silhouette in frame]
+    apart = [np.count_nonzero(a ^ b) for a, b in zip(drawn, seen, strict=True)]
+    shown = [np.count_nonzero(a) + np.count_nonzero(b) for a, b in zip(drawn, seen, strict=True)]
+    return view_weights(np.array(apart), np.array(shown))
 
 
 def _sighting(frame: Sequence[Silhouette], metres: np.ndarray, spacing_m: float) -> Sighting:
