@@ -21,11 +21,13 @@ from ..fitting.scores import FrameScores, frame_scores
 from ..fitting.tracker import EvaluatorFactory, Past
 from ..fitting.turns import heading_dof
 from ..silhouettes.silhouette import Silhouette
+from .doubts import doubts_about
 from .facing import CLEARLY, Way, faced
 from .hunt import Hunt, all_round, stood
 from .own_shape import in_own_shape
 from .pose_kinds import pose_of_kind
 from .shape_fit import ShapeFit
+from .sightings import is_whole
 from .standing import body_centre, row_span, standing_height
 
 _log = logging.getLogger(__name__)
@@ -155,7 +157,7 @@ def measured(
     request: PoseRequest,
     make_evaluator: EvaluatorFactory,
 ) -> FirstFit:
-    """The first fit in the performer's own shape, if that is wanted; its first note tells it.
+    """The first fit in the performer's own shape, if that is wanted; its notes tell all about it.
 
     ``frames`` all show its pose.
     """
@@ -164,11 +166,13 @@ def measured(
         poses = np.tile(first.pose, (len(frames), 1))
         start = (first.body, cameras, frames, poses, make_evaluator, request.height_m)
         own = in_own_shape(*start)
-        iou = frame_scores(make_evaluator(own.body, cameras), own.pose, frames[0]).iou
-        first = replace(first, body=own.body, pose=own.pose, iou=iou, shape=own.fit)
+        first = replace(first, body=own.body, pose=own.pose, shape=own.fit)
         told = f"; {own.note}"
+    scores = frame_scores(make_evaluator(first.body, cameras), first.pose, frames[0])
+    first = replace(first, iou=scores.iou)
     _log.info("first pose: IoU by camera %s", first.iou.round(3).tolist())
     note = f"The performer is {rest_height(first.body):.2f} m tall{told}."
+    first = replace(first, doubts=(*first.doubts, *doubts_about(scores, frames[0])))
     return first.with_words(note, doubtful=False)
 
 
@@ -200,10 +204,8 @@ def _extent_ratio(
     ]
     ratios = []
     for silhouettes in frames:
-        for camera, model, silhouette in zip(cameras, rendered, silhouettes, strict=True):
+        for model, silhouette in zip(rendered, silhouettes, strict=True):
             seen = row_span(silhouette)
-            if seen is None or model is None:
-                continue
-            if seen[0] > 0 and seen[1] < camera.size[1] - 1:
+            if seen is not None and model is not None and is_whole(silhouette):
                 ratios.append((seen[1] - seen[0] + 1) / (model[1] - model[0] + 1))
     return float(np.median(ratios)) if ratios else 1.0

@@ -2,7 +2,7 @@
 
 import logging
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,6 +16,8 @@ from ..fitting.tracker import EvaluatorFactory, Past
 from ..silhouettes.silhouette import Silhouette
 from .shape_fit import ShapeFit, fitted_shape
 
+_OTHER_HEIGHT = 0.04
+"""Between what is given and what the silhouettes show, as a share."""
 _log = logging.getLogger(__name__)
 
 
@@ -26,7 +28,7 @@ class OwnShape:
     Attributes:
         body: in the shape that explains the silhouettes best.
         pose: (D,) in the first of the frames.
-        fit: what was found of the shape.
+        fit: the shape of that body.
         note: a sentence on it.
     """
 
@@ -59,18 +61,34 @@ def in_own_shape(
     before = ContourTracker(body, cameras, make_evaluator)
     poses = _fitted(before, frames, poses)
     found = fitted_shape(body, cameras, frames, poses, make_evaluator)
-    shaped = found.body
+    height_note = ""
     if height_m is not None:
-        shaped = scaled(shaped, height_m / rest_height(shaped))
-    after = ContourTracker(shaped, cameras, make_evaluator)
+        found, height_note = _of_height(found, height_m)
+    after = ContourTracker(found.body, cameras, make_evaluator)
     last = _fitted(after, frames, found.poses)
     plain, own = _energy(before, frames, poses), _energy(after, frames, last)
     _log.info("shape: %d px differ, %d with the template's proportions", own, plain)
     if own >= plain:
         note = "the template's own proportions explain the silhouettes best"
-        return OwnShape(body, poses[0], found, note)
-    note = f"the performer's own shape leaves {1 - own / plain:.0%} fewer px apart"
-    return OwnShape(shaped, last[0], found, note)
+        logs, last = np.zeros_like(found.logs), poses
+        found = replace(found, body=body, logs=logs)
+    else:
+        note = f"the performer's own shape leaves {1 - own / plain:.0%} fewer px apart"
+    found = replace(found, poses=last)
+    return OwnShape(found.body, last[0], found, note + height_note)
+
+
+def _of_height(found: ShapeFit, height_m: float) -> tuple[ShapeFit, str]:
+    """The shape at a height that is given, and what to say where another one is seen."""
+    seen_m = rest_height(found.body)
+    ratio = height_m / seen_m
+    note = ""
+    if abs(ratio - 1) > _OTHER_HEIGHT:
+        note = (
+            f"; the silhouettes show {seen_m:.2f} m: check height_m under [performer], and units "
+            "under [cameras]"
+        )
+    return replace(found, body=scaled(found.body, ratio), logs=found.logs + np.log(ratio)), note
 
 
 def _fitted(

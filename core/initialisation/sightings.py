@@ -13,7 +13,7 @@ from ..silhouettes.silhouette import Silhouette
 from .standing import standing_height
 
 Silhouettes = tuple[Silhouette, ...]
-_FEWEST_WHOLE = 2
+FEWEST_WHOLE = 2
 """Views that show all of the performer."""
 _CUT_PX = 3
 """Of a silhouette at the edge, that do not cut the performer off."""
@@ -76,7 +76,7 @@ def sightings(footage: Footage, frames: Sequence[int], floor: float) -> list[Sig
     for frame in frames:
         silhouettes = footage.look(frame)
         centre = performer_centre(footage.cameras, silhouettes)
-        if centre is not None and sum(map(_is_whole, silhouettes)) >= _FEWEST_WHOLE:
+        if centre is not None and sum(map(is_whole, silhouettes)) >= FEWEST_WHOLE:
             height = standing_height(footage.cameras, silhouettes, centre, floor)
             found.append(Sighting(frame, height, 0.0, np.zeros(0)))
     if not found:
@@ -88,7 +88,7 @@ def sightings(footage: Footage, frames: Sequence[int], floor: float) -> list[Sig
     return found
 
 
-def _is_whole(silhouette: Silhouette) -> bool:
+def is_whole(silhouette: Silhouette) -> bool:
     """Whether it shows a performer that neither the edge nor anything unobserved cuts off."""
     patch = main_patch(silhouette)
     inside = np.pad(silhouette.observed, 1).astype(np.uint8)

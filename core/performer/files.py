@@ -66,11 +66,11 @@ def write_performer(
     Raises:
         MocapError: they cannot be written.
     """
-    write_body(out / BODY, performer.body)
-    write_report(out / MEASURES, _figures(performer, begin))
     pictures = {SHAPE: _shape_picture(begin, performer)}
     if take.initial_pose.kind is not None:
         pictures |= _contour_pictures(begin, performer, take.initial_pose.kind, settings)
+    write_body(out / BODY, performer.body)
+    write_report(out / MEASURES, _figures(performer, begin))
     for name, picture in pictures.items():
         with whole_file(out / name) as partial:
             partial.write_bytes(cv2.imencode(".png", picture)[1].tobytes())

@@ -14,6 +14,7 @@ from ..initialisation.contour_rules.skeleton import ContourSkeleton
 from ..initialisation.further_frames import straight_joints
 from ..progress import Progress
 from ..rendering.choice import Choice
+from ..results.writing import MOTION
 from ..take.performer import performer_body
 from ..take.take import Take
 from ..take.views import narrowed, open_views
@@ -45,8 +46,8 @@ def initialise(
     """The performer's body and measures, and the files that tell of them.
 
     Raises:
-        MocapError: the take, its calibration or its footage is at fault, or its body is fitted
-            already.
+        MocapError: the take, its calibration or its footage is at fault, its body is fitted
+            already, or the folder holds a fit, which its body belongs to.
     """
     if isinstance(take.performer.body, Path):
         raise MocapError(
@@ -58,6 +59,10 @@ def initialise(
             f"names a rig, {take.performer.body.path.name}, which keeps its own shape",
             'name a template under [performer], such as body = "performer"', file=take.path,
         )  # fmt: skip
+    if (request.out / MOTION).exists():
+        raise MocapError(
+            "holds a fit, whose body would be replaced", "give another folder", file=request.out
+        )
     views = open_views(take, request.without, (None, None), progress)
     further = request.further and narrowed(take, views.frames, request.further)
     choice = Choice(None, progress.warn)

@@ -104,6 +104,17 @@ def _(folder: Path):
 
 
 @OUTPUT.add(
+    "a body that would replace that of a fit",
+    "small: holds a fit, whose body would be replaced",
+    "give another folder",
+    early=False,
+)
+def _(folder: Path):
+    (folder / "motion.npz").touch()
+    return ("initialise", folder / "take.toml", "--out", folder)
+
+
+@OUTPUT.add(
     "masks that would replace the masks they are made from",
     "masks/cam_01, camera cam_01: holds the pictures of the take",
     "give another folder",

@@ -1,3 +1,4 @@
+import cv2
 import numpy as np
 import pytest
 from silhouette_mocap.core.body.body import POINT_NAMES as POINTS
@@ -6,7 +7,7 @@ from silhouette_mocap.core.cameras.presets import Ring, ring
 from silhouette_mocap.core.initialisation.first_pose import PoseRequest, initialised
 from silhouette_mocap.core.initialisation.own_shape import in_own_shape
 from silhouette_mocap.core.initialisation.pose_kinds import pose_of_kind
-from silhouette_mocap.core.initialisation.shape_fit import fitted_shape
+from silhouette_mocap.core.initialisation.shape_fit import ShapeSettings, fitted_shape
 from silhouette_mocap.core.initialisation.shape_model import ShapeModel
 from silhouette_mocap.core.silhouettes.silhouette import Silhouette
 from synthetic import dof_values, evaluator, filmed, small_body
@@ -105,6 +106,39 @@ def test_a_known_height_is_kept_whatever_the_shape():
     frames = (filmed(truth, CAMERAS, pose),)
     own = in_own_shape(BODY, CAMERAS, frames, pose[None], evaluator, height_m=1.7)
     assert rest_height(own.body) == pytest.approx(1.7)
+    assert own.fit.body is own.body
+    assert "the silhouettes show 1.83 m: check height_m" in own.note
+
+
+def test_measures_are_those_of_the_body_where_the_template_stays():
+    frames = (filmed(BODY, CAMERAS, pose_of_kind(BODY, "A")),)
+    own = in_own_shape(BODY, CAMERAS, frames, pose_of_kind(BODY, "A")[None], evaluator, 1.95)
+    assert "the template's own proportions" in own.note
+    assert own.fit.body is own.body
+    assert not own.fit.logs.any()
+
+
+def test_a_view_that_shows_too_much_does_not_fatten_the_performer():
+    truth = someone()
+    cameras, pose = CAMERAS[:4], pose_of_kind(truth, "A")
+    frame = list(filmed(truth, cameras, pose))
+    honest = fitted_shape(BODY, cameras, [frame], pose[None], evaluator)
+    thick = cv2.dilate(frame[2].foreground.view(np.uint8), np.ones((9, 9), np.uint8))
+    frame[2] = Silhouette(thick.astype(bool), frame[2].observed)
+    found = fitted_shape(BODY, cameras, [frame], pose[None], evaluator)
+    assert np.abs(found.logs - honest.logs).max() < 0.06
+
+
+def test_the_last_digits_of_poses_do_not_change_the_body():
+    truth = someone()
+    frames = [filmed(truth, CAMERAS, pose) for pose in bent(truth)[:2]]
+    settings = ShapeSettings(rounds=4)
+    first, again = (
+        fitted_shape(BODY, CAMERAS, frames, bent(BODY)[:2] + other, evaluator, settings)
+        for other in (0.0, 1e-10)
+    )
+    assert np.array_equal(first.body.offsets, again.body.offsets)
+    assert np.array_equal(first.poses, again.poses)
 
 
 def test_one_instant_in_twenty_cameras_of_a_dome_gives_a_body():

@@ -11,6 +11,7 @@ from silhouette_mocap.core.body.kinematics import rest_height
 from silhouette_mocap.core.body.templates import template
 from silhouette_mocap.core.cli import main
 from silhouette_mocap.core.errors import MocapError
+from silhouette_mocap.core.performer import files
 from silhouette_mocap.core.performer.initialise import InitialiseRequest, initialise
 from silhouette_mocap.core.pipeline import FitRequest, fit
 from silhouette_mocap.core.progress import Silence
@@ -25,12 +26,12 @@ def found(small_take, tmp_path_factory):
 
 
 def test_the_body_is_the_performers_and_serves_a_fit_as_it_is(found, small_take, tmp_path):
-    _, files = found
-    body = read_body(files[0])
+    _, written = found
+    body = read_body(written[0])
     # one px of 29 mm at each end, of 1.75 m
     assert rest_height(body) == pytest.approx(rest_height(template("sixteen_segment")), rel=0.03)
     take = read_take(small_take)
-    take = replace(take, performer=replace(take.performer, body=files[0]))
+    take = replace(take, performer=replace(take.performer, body=written[0]))
     fit(take, FitRequest(tmp_path, frames=(0, 1)), Silence())
     again = read_body(tmp_path / "body.npz")
     np.testing.assert_array_equal(again.offsets, body.offsets)
@@ -39,15 +40,15 @@ def test_the_body_is_the_performers_and_serves_a_fit_as_it_is(found, small_take,
 
 
 def test_measures_and_pictures_tell_how_it_was_found(found):
-    _, files = found
-    names = [path.name for path in files]
+    _, written = found
+    names = [path.name for path in written]
     assert names[:3] == ["body.npz", "measures.json", "shape.png"]
     assert [name for name in names if name.startswith("contour_")] == [
         f"contour_cam_0{k}.png" for k in range(1, 6)
     ]
-    for path in files[2:]:
+    for path in written[2:]:
         assert cv2.imread(str(path)).std() > 5
-    told = json.loads(files[1].read_text("utf-8"))
+    told = json.loads(written[1].read_text("utf-8"))
     forearm = next(length for length in told["lengths"] if length["name"] == "forearm")
     body = template("sixteen_segment")
     true = np.linalg.norm(body.tails[body.joint_names.index("left_elbow")])
@@ -72,10 +73,10 @@ def test_further_frames_with_bent_limbs_are_used_on_request(small_take, tmp_path
 def test_a_contour_that_cannot_be_read_is_told_and_does_no_harm(small_take, tmp_path):
     take, progress = read_take(small_take), Notes()
     narrow = replace(take, initial_pose=InitialPose((0, 1), "elbows"))
-    performer, files = initialise(narrow, InitialiseRequest(tmp_path), progress)
+    performer, written = initialise(narrow, InitialiseRequest(tmp_path), progress)
     assert performer.skeleton is None
     assert any("the body comes from the silhouettes as a whole" in note for note in progress.told)
-    assert json.loads(files[1].read_text("utf-8"))["contour"] is None
+    assert json.loads(written[1].read_text("utf-8"))["contour"] is None
 
 
 def test_a_body_that_is_fitted_already_is_not_fitted_again(small_take, tmp_path):
@@ -96,3 +97,21 @@ def test_the_command_prints_lengths_with_their_uncertainty(small_take, tmp_path,
     assert "no frame bends elbow or knee" in shown
     assert "virtual leg" in shown
     assert "contour_cam_01.png" in shown
+
+
+def test_the_body_of_a_fit_is_not_replaced(small_take, tmp_path):
+    fit(read_take(small_take), FitRequest(tmp_path, frames=(0, 0)), Silence())
+    before = (tmp_path / "body.npz").read_bytes()
+    with pytest.raises(MocapError, match="holds a fit, whose body would be replaced"):
+        initialise(read_take(small_take), InitialiseRequest(tmp_path), Silence())
+    assert (tmp_path / "body.npz").read_bytes() == before
+
+
+def test_nothing_is_written_where_pictures_cannot_be_drawn(small_take, tmp_path, monkeypatch):
+    def fails(*_):
+        raise MocapError("cannot be read", "check the file")
+
+    monkeypatch.setattr(files, "_contour_pictures", fails)
+    with pytest.raises(MocapError):
+        initialise(read_take(small_take), InitialiseRequest(tmp_path), Silence())
+    assert not list(tmp_path.iterdir())
