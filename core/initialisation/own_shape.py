@@ -12,6 +12,7 @@ from ..body.scaling import scaled
 from ..cameras.camera import Camera
 from ..energy.weight_maps import xor_weight_maps
 from ..fitting.contour import ContourTracker
+from ..fitting.scores import frame_scores
 from ..fitting.tracker import EvaluatorFactory, Past
 from ..silhouettes.silhouette import Silhouette
 from .shape_fit import ShapeFit, fitted_shape
@@ -48,7 +49,8 @@ def in_own_shape(
 ) -> OwnShape:
     """The body in the shape that the frames show.
 
-    Where the silhouettes are explained no better by that, it stays as it is.
+    Where the silhouettes are explained no better by that, it stays as it is; views that disagree
+    while the others agree count less.
 
     Args:
         body: at about the performer's scale.
@@ -66,8 +68,12 @@ def in_own_shape(
         found, height_note = _of_height(found, height_m)
     after = ContourTracker(found.body, cameras, make_evaluator)
     last = _fitted(after, frames, found.poses)
-    plain, own = _energy(before, frames, poses), _energy(after, frames, last)
-    _log.info("shape: %d px differ, %d with the template's proportions", own, plain)
+    shown = zip(last, frames, strict=True)
+    scores = [frame_scores(after.evaluator, pose, frame) for pose, frame in shown]
+    trust = np.stack([score.view_weights for score in scores])
+    own = float((trust * np.stack([score.xor_px for score in scores])).sum())
+    plain = float((trust * _energies(before, frames, poses)).sum())
+    _log.info("shape: %.0f px differ, %.0f with the template's proportions", own, plain)
     if own >= plain:
         note = "the template's own proportions explain the silhouettes best"
         logs, last = np.zeros_like(found.logs), poses
@@ -98,11 +104,14 @@ def _fitted(
     return np.stack([tracker.fit(frame, Past.still(pose)).pose for frame, pose in pairs])
 
 
-def _energy(
+def _energies(
     tracker: ContourTracker, frames: Sequence[tuple[Silhouette, ...]], poses: np.ndarray
-) -> int:
+) -> np.ndarray:
+    """(F, V) px that differ."""
     evaluator = tracker.evaluator
-    return sum(
-        int(evaluator.energies(evaluator.prepared(xor_weight_maps(frame)), pose[None]).sum())
-        for frame, pose in zip(frames, poses, strict=True)
+    return np.stack(
+        [
+            evaluator.energies(evaluator.prepared(xor_weight_maps(frame)), pose[None])[0]
+            for frame, pose in zip(frames, poses, strict=True)
+        ]
     )
