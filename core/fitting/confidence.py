@@ -3,7 +3,7 @@
 A logistic model of what a fit can know without the truth: how well the silhouettes fix the point,
 how far its limb's outline lies from the contours, and what of the footage and the limb is left
 unexplained. Its weights were found by maximum likelihood on takes with known motion, undisturbed
-and disturbed: points beyond 50 mm against the rest, those beyond 150 mm counted 115 times, as a
+and disturbed: points beyond 50 mm against the rest, those beyond 150 mm counted 400 times, as a
 point that is lost and not told costs more than one that is doubted in vain.
 """
 
@@ -14,7 +14,7 @@ import numpy as np
 
 from .limbs import POINT_LIMBS
 
-WEIGHTS = np.array([1.608, -6.152, -0.587, -7.205, -9.745])
+WEIGHTS = np.array([2.954, -3.494, -0.501, -14.47, -15.696])
 """Of 1, ln(spread / 10 mm), ln(residual / 10 mm), share unexplained, and the root of the lumps, m^2
 per view, beyond the usual ones. More of any but the first is never likelier."""
 _USUAL = 1.4
