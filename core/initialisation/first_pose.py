@@ -25,7 +25,7 @@ from .doubts import doubts_about
 from .facing import CLEARLY, Way, faced
 from .hunt import Hunt, all_round, stood
 from .own_shape import in_own_shape
-from .pose_kinds import pose_of_kind
+from .pose_kinds import POSE_KINDS, STANDING, kinds_to_try, nearest_kind, pose_of_kind, stance
 from .shape_fit import ShapeFit
 from .sightings import is_whole
 from .standing import body_centre, row_span, standing_height
@@ -111,14 +111,22 @@ def initialised(
     body = of_height(template, height)
     _log.info("performer %.3f m tall, around %s m", height, centres[0].round(3).tolist())
     assert request.kind is not None
-    starts = all_round(body, pose_of_kind(template, request.kind)[None])
+    kinds = kinds_to_try(request.kind)
+    named = pose_of_kind(template, request.kind)
+    others = [stance(template, kind, STANDING) for kind in kinds[1:]]
+    starts = all_round(body, np.stack([named, *others]))
     hunt = Hunt(ContourTracker(body, cameras, make_evaluator), frames[0])
     ends = hunt.ends(stood(body, starts, centres[0], request.floor), _DESCENTS)
     yaw = heading_dof(body)
-    shown = (f"{round(np.degrees(end.pose[yaw])) % 360}°: {end.energy:.0f}" for end in ends)
-    _log.info("first descents, energy by heading: %s", ", ".join(shown))
+    headings = (f"{round(np.degrees(end.pose[yaw])) % 360}°: {end.energy:.0f}" for end in ends)
+    _log.info("first descents, energy by heading: %s", ", ".join(headings))
     first, _ = settled(hunt, ends[0].pose, frames, request, make_evaluator)
-    return measured(first, cameras, frames, request, make_evaluator)
+    first = measured(first, cameras, frames, request, make_evaluator)
+    shown = nearest_kind(first.body, first.pose, kinds) if others else request.kind
+    if shown == request.kind or shown not in POSE_KINDS:
+        return first
+    doubt = f'the arms look more like "{shown}" than like the named kind, "{request.kind}"'
+    return replace(first, doubts=(f"{doubt}: check initial_pose", *first.doubts))
 
 
 def of_height(template: Body, height: float) -> Body:

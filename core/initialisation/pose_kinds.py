@@ -4,6 +4,7 @@ Arms and legs are solved so that elbow and wrist, knee and ankle lie where the s
 the body's own angles are, each limb by itself under a trunk at rest.
 """
 
+from collections.abc import Sequence
 from functools import lru_cache
 from itertools import product
 
@@ -11,7 +12,7 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from ..body.body import POINT_NAMES, Body, Part
-from ..body.kinematics import carried_points, clamped
+from ..body.kinematics import carried_points, clamped, points
 from ..errors import MocapError
 from ..fitting.twists import Twists
 
@@ -73,6 +74,21 @@ def pose_of_kind(body: Body, kind: str) -> np.ndarray:
             f'use "{REST}", and let the take begin in the rest pose',
         )
     return stance(body, kind, STANDING)
+
+
+def kinds_to_try(kind: str) -> tuple[str, ...]:
+    """The named kind first, and what else somebody may stand like who was asked for it."""
+    return (kind, *(arms for arms in ASKED if arms != kind)) if kind in POSE_KINDS else (kind,)
+
+
+def nearest_kind(body: Body, pose: np.ndarray, kinds: Sequence[str]) -> str:
+    """Of several kinds, the one whose elbows and wrists are nearest to those of a pose (D,)."""
+    arms = [POINT_NAMES.index(f"{s}_{j}") for s in ("left", "right") for j in ("elbow", "wrist")]
+    upright = np.where(body.dofs.joints == 0, 0.0, pose)
+    poses = np.stack([upright, *(stance(body, kind, STANDING) for kind in kinds)])
+    seen, *places = points(body, poses)[:, arms]
+    apart = [float(np.linalg.norm(place - seen, axis=1).mean()) for place in places]
+    return kinds[int(np.argmin(apart))]
 
 
 def all_stances() -> list[tuple[str, str]]:

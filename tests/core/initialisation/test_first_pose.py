@@ -100,3 +100,19 @@ def test_point_errors_name_what_moved():
     pose[body.dofs.names.index("left_elbow_flexion")] = 0.5
     errors = point_errors(body, pose, body.rest_pose)
     assert [name for name, error in errors.items() if error > 1e-6] == ["left_wrist"]
+
+
+@pytest.mark.parametrize(("shown", "told"), [("T", "A"), ("A", "T"), ("elbows", "A")])
+def test_a_pose_of_another_kind_than_named_is_found_and_told(shown, told):
+    body, truth = standing("performer", shown, 1.0, 0.7)
+    cameras = small_studio()
+    silhouettes = filmed(body, cameras, truth)
+    first = initialised(body, cameras, (silhouettes,), PoseRequest(told), evaluator)
+    error = np.linalg.norm(
+        points(first.body, first.pose[None])[0] - points(body, truth[None])[0], axis=1
+    )
+    # of a px of 33 mm
+    assert error.max() < 0.066
+    assert any(f'more like "{shown}"' in doubt for doubt in first.doubts)
+    right = initialised(body, cameras, (silhouettes,), PoseRequest(shown), evaluator)
+    assert not any("more like" in doubt for doubt in right.doubts)
