@@ -1,14 +1,13 @@
 """Tracking a recording, and what the track is worth."""
 
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
 from itertools import chain
 
 import numpy as np
 
-from ..fitting.passes import Passes, directions_from
+from ..fitting.passes import Passes, directions_from, with_contours
 from ..fitting.tracking import FrameFit
 from ..motion.motion import Motion
 from ..motion.point_track import PointTrack
@@ -16,7 +15,6 @@ from ..motion.recording import recorded
 from ..motion.scoring import Score, score
 from ..rendering.choice import MakeEvaluator
 from ..rendering.detail import with_level_for
-from ..silhouettes.silhouette import Silhouette
 from .disturbances.recording import Recording
 from .tracking_takes import Beginning, native_choice, truth_of
 from .tracking_variants import Variant
@@ -70,7 +68,7 @@ def tracked(
     directions = directions_from(start.frame, recording.frames)
     fits: dict[int, FrameFit] = {}
     passes = Passes(tracker, start.pose, directions, fits, truth_of(recording).fps or 1.0)
-    read = partial(_read, recording)
+    read = with_contours(recording.silhouettes)
     for fit in chain.from_iterable(passes.first(read)):
         fits[fit.frame] = fit
         advance(fit.frame)
@@ -87,17 +85,6 @@ def tracked(
         seconds=looking + sum(fit.seconds for fit in fits.values()),
         evaluations=np.array([fits[frame].tally.evaluated for frame in sorted(fits)]),
     )
-
-
-def _read(
-    recording: Recording, frames: Iterable[int]
-) -> Iterator[tuple[int, tuple[Silhouette, ...]]]:
-    """Numbers and silhouettes of ``frames``, contours found."""
-    for frame in frames:
-        silhouettes = recording.silhouettes(frame)
-        for silhouette in silhouettes:
-            _ = silhouette.contour
-        yield frame, silhouettes
 
 
 def _points(motion: Motion) -> PointTrack:

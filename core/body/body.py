@@ -25,6 +25,11 @@ POINT_NAMES = (
 )  # fmt: skip
 
 
+def unsided(name: str) -> str:
+    """The name of a joint, segment or part without its side."""
+    return name.removeprefix("left_").removeprefix("right_")
+
+
 class DofKind(IntEnum):
     """The elementary motion of one row of the DOF table."""
 

@@ -6,7 +6,7 @@ is found, and found again among those that are kept: nothing here grows with the
 """
 
 from bisect import bisect_left
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from types import MappingProxyType
@@ -14,6 +14,7 @@ from types import MappingProxyType
 import numpy as np
 
 from ..ahead import made_ahead
+from ..silhouettes.silhouette import Silhouette
 from .second_look import Course, Read, looked_again
 from .tracker import Tracker
 from .tracking import Fits, FrameFit, History, track
@@ -64,6 +65,19 @@ class Passes:
         """The fits that the second look changes, stretch by stretch of the `courses`."""
         for course in self.courses:
             yield from looked_again(self.tracker, course, read)
+
+
+def with_contours(look: Callable[[int], tuple[Silhouette, ...]]) -> Read:
+    """Reads frames by ``look``, and finds their contours, too."""
+
+    def read(frames: Iterable[int]) -> Iterator[tuple[int, tuple[Silhouette, ...]]]:
+        for frame in frames:
+            silhouettes = look(frame)
+            for silhouette in silhouettes:
+                _ = silhouette.contour
+            yield frame, silhouettes
+
+    return read
 
 
 def directions_from(origin: int, frames: Sequence[int]) -> tuple[Sequence[int], ...]:

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..body.body import Body
+from ..body.body import Body, unsided
 
 BENT_DEG = 30.0
 """An elbow or knee that bends so far shows where it is (SPEC §7)."""
@@ -40,7 +40,7 @@ def straight_joints(body: Body, poses: np.ndarray) -> tuple[str, ...]:
     for dof in dofs:
         joint = int(body.dofs.joints[dof])
         if np.count_nonzero(body.dofs.joints == joint) == 1:
-            name = body.joint_names[joint].removeprefix("left_").removeprefix("right_")
+            name = unsided(body.joint_names[joint])
             furthest = np.degrees(np.abs(poses[:, dof]).max())
             bent[name] = bent.get(name, False) or furthest >= BENT_DEG
     return tuple(sorted(name for name, shown in bent.items() if not shown))

@@ -12,14 +12,13 @@ girths of a segment share; and what each has of its own. Bones differ by 4 to 6 
 girths by 10 to 20 % (ANSUR II, 2012: standard deviations of limb lengths and circumferences).
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
 
-from ..body.body import Body, Surface
-from ..body.kinematics import rest_joints
+from ..body.body import Body, Surface, unsided
+from ..body.kinematics import world_vertices
 from ..body.templates.landmarks import FORWARD, UP
 
 _STATIONS = 3
@@ -196,8 +195,8 @@ class ShapeModel:
 
     def _bone(self, body: Body, joint: int) -> int:
         """Index of the factor along a joint's bone, or of its whole; -1 where it has no bone."""
-        name = _unsided(_segment_of(body, joint))
-        if any(surface.skin is not None for surface in body.surfaces):
+        name = unsided(_segment_of(body, joint))
+        if _is_skinned(body):
             return self._factor("size", "size", "", _SIZE)
         if self._whole[joint]:
             return self._factor(f"{name} size", "size", "", _SIZE)
@@ -215,11 +214,11 @@ class ShapeModel:
         offset, bone = body.offsets[joint], body.tails[parent]
         if np.linalg.norm(offset - _along(offset, bone)) < _ACROSS_M:
             return -1
-        return self._factor(f"{_unsided(body.joint_names[joint])} place", "place", "", _PLACE)
+        return self._factor(f"{unsided(body.joint_names[joint])} place", "place", "", _PLACE)
 
     def _girths_of(self, body: Body, segment: int) -> _Girths:
         own, joint = body.segment_names[segment], int(body.segment_joints[segment])
-        name, bone = _unsided(own), body.tails[joint]
+        name, bone = unsided(own), body.tails[joint]
         begin, end = body.surfaces[-1].vertex_starts[segment : segment + 2]
         axes = _axes(bone)
         along = body.surfaces[-1].vertices[begin:end] @ axes[0] / np.linalg.norm(bone)
@@ -244,7 +243,7 @@ class ShapeModel:
 
 def _whole_joints(body: Body) -> np.ndarray:
     """(J,) bool, which joints' segments change as a whole: what ends move, and what has no bone."""
-    if any(surface.skin is not None for surface in body.surfaces):
+    if _is_skinned(body):
         return np.ones(len(body.joint_names), bool)
     ends = [dof for part in body.parts if part.role == "end" for dof in part.dofs]
     whole = np.isin(np.arange(len(body.joint_names)), body.dofs.joints[ends])
@@ -254,11 +253,15 @@ def _whole_joints(body: Body) -> np.ndarray:
     return whole
 
 
+def _is_skinned(body: Body) -> bool:
+    return any(surface.skin is not None for surface in body.surfaces)
+
+
 def _limb_of(body: Body, joint: int) -> str:
     """The limb, without its side, whose segments a joint carries; nothing for the trunk's."""
     for part in body.parts:
         if part.role == "limb" and joint in body.segment_joints[list(part.segments)]:
-            return _unsided(part.name)
+            return unsided(part.name)
     return ""
 
 
@@ -266,10 +269,6 @@ def _segment_of(body: Body, joint: int) -> str:
     """Name of the first segment that a joint carries, else its own."""
     carried = np.flatnonzero(body.segment_joints == joint)
     return body.segment_names[carried[0]] if len(carried) else body.joint_names[joint]
-
-
-def _unsided(name: str) -> str:
-    return name.removeprefix("left_").removeprefix("right_")
 
 
 def _along(vector: np.ndarray, bone: np.ndarray) -> np.ndarray:
@@ -287,13 +286,4 @@ def _axes(bone: np.ndarray) -> np.ndarray:
 
 def _sole(body: Body) -> float:
     """Height of the lowest vertex in the rest pose."""
-    return min(_lowest(body))
-
-
-def _lowest(body: Body) -> Iterator[float]:
-    rest, surface = rest_joints(body), body.surfaces[-1]
-    for joint, (begin, end) in zip(
-        body.segment_joints, pairwise(surface.vertex_starts), strict=True
-    ):
-        if end > begin:
-            yield float(surface.vertices[begin:end, 2].min() + rest[joint, 2])
+    return float(world_vertices(body, body.rest_pose)[:, 2].min())

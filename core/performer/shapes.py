@@ -1,14 +1,13 @@
 """The performer's shape from the initial pose, or from limbs that bend in further frames."""
 
-from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from itertools import chain
 
 import numpy as np
 
-from ..beginning import Beginning, Silhouettes
+from ..beginning import Beginning
 from ..body.body import Body
-from ..fitting.passes import Passes, directions_from
+from ..fitting.passes import Passes, directions_from, with_contours
 from ..fitting.tracking import FrameFit
 from ..initialisation.further_frames import most_different
 from ..initialisation.own_shape import in_own_shape
@@ -18,7 +17,6 @@ from ..rendering.choice import Choice
 from ..rendering.detail import with_level_for
 from ..take.performer import known_height
 from ..take.take import Take
-from ..take.views import Views
 
 _FRAMES = 12
 
@@ -94,16 +92,7 @@ def _tracked(
     directions = directions_from(origin, frames)
     passes = Passes(tracker, first.pose, directions, fits, float(take.fps))
     progress.begin("track", len(frames))
-    for fit in chain.from_iterable(passes.first(lambda wanted: _read(views, wanted))):
+    for fit in chain.from_iterable(passes.first(with_contours(views.silhouettes))):
         fits[fit.frame] = fit
         progress.advance(fit.frame)
     return fits
-
-
-def _read(views: Views, frames: Iterable[int]) -> Iterator[tuple[int, Silhouettes]]:
-    """Numbers and silhouettes of ``frames``, contours found."""
-    for frame in frames:
-        silhouettes = views.silhouettes(frame)
-        for silhouette in silhouettes:
-            _ = silhouette.contour
-        yield frame, silhouettes
